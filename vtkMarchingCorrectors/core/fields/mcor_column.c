@@ -144,8 +144,8 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
 }
 
 /* Returns place i where the density is evaluated along an axis: the nodes come first, then the
- * points of each cell. *length: how long a cell is at this place. Cells of radial kernels are
- * shorter near the centre, where the density may have a cusp. */
+ * quadrature points of each cell. *length: how long a cell is at this place. Cells of radial
+ * kernels are shorter near the centre, where the density may have a cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];

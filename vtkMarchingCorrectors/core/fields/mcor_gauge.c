@@ -24,7 +24,7 @@
 
 /* Samples treated together. */
 #define MCOR_GAUGE_TOGETHER (1 << 20)
-/* Steps beyond a box up to which the field is evaluated. */
+/* The field is evaluated up to this many steps beyond the box. */
 #define MCOR_GAUGE_MARGIN 2.5
 #define MCOR_GAUGE_STEP 0.25 /* in smallest scaled smoothing lengths */
 #define MCOR_GAUGE_LEAST_STEPS 4
@@ -38,8 +38,8 @@
 #define MCOR_GAUGE_SOLVE_ROUNDS 8
 #define MCOR_GAUGE_NEAR 0.5
 
-/* A part of a line between two places at which the weight sum is known. Places are numbers from 0 to
- * 1. */
+/* A part of a line between two places at which the weight sum is known. Places are numbers from 0,
+ * the line's beginning, to 1, its end. */
 typedef struct mcor_gauge_part
 {
   int64_t line;
@@ -60,7 +60,8 @@ typedef struct mcor_gauge_row
   const double* weight; /* [count] */
 } mcor_gauge_row;
 
-/* A place on a line. A record's place is a crossing or, below 0, one of these facts. */
+/* A place on a line. In job->records, a place is where the line crosses the level or, below 0, one
+ * of these two facts. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
 typedef struct mcor_gauge_place
@@ -190,7 +191,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 
 /* ---- crossings ---- */
 
-/* Evaluates the weight sums at the inner places. */
+/* Evaluates the weight sums at the places job->inner, and writes them to job->weights. */
 static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
 {
   double* points = (double*)job->base.run->points->data;

@@ -44,7 +44,7 @@ void mcor_release_probe(mcor_probe_run* run);
 mcor_status mcor_make_arrays(mcor_context* context, const mcor_input* input,
   const int64_t* not_finite, int64_t count, int numbers, double*** arrays);
 void mcor_free_arrays(double** arrays, int count);
-/* Ends a call without a surface. */
+/* Ends a call that makes no surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 
 /* mcor_widen.c. Makes *volume, [count], unit L^3: the computed volumes, which are found from the

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Widening: longer smoothing lengths make a smoother surface, as long as each particle stays
- * inside of it. This call makes the factors; mcor_extract takes them with its input.
+/* Widening: longer smoothing lengths make a smoother surface, as long as each particle stays inside
+ * of the surface. This call makes the factors; mcor_extract takes them with its input.
  *
  * The rule. All sums are over fluid particles k; ramp(x, a, b) rises from 0 at a to 1 at b as
  * t^2 (3 - 2 t).

@@ -280,7 +280,7 @@ static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, in
   return *which >= 0;
 }
 
-/* Returns the message that there is no smoothing length. The message suggests one. */
+/* Returns the message that there is no smoothing length. The message may suggest a length. */
 static mcor_message mcor_no_length(mcor_finder* f)
 {
   const int64_t count = f->positions->tuples;

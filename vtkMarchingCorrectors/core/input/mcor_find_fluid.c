@@ -131,8 +131,8 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
 }
 
 /* Finds an array that tells without doubt which particles are fluid; among several, the one with
- * the most usual name. If there is none, found->unused_type names an array that seems to tell
- * it. */
+ * the most usual name. If there is none, found->unused_type names an array of particle types that
+ * is not used. */
 static void mcor_look_for_fluid(mcor_finder* f)
 {
   mcor_found* found = f->found;

@@ -96,7 +96,8 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
 /* Reads all coordinates of the next particles, at most MCOR_CHUNK. */
 void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
-/* A chunk of particles: places, smoothing lengths, lengths of their kernels. */
+/* A chunk of particles. h: smoothing lengths; length: smoothing lengths times the factors of
+ * widening. Neither is multiplied by h_scale. */
 typedef struct mcor_places
 {
   int count;
@@ -217,7 +218,7 @@ double mcor_median_of(double* values, int count);
 /* Reads smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
-/* Computes the lengths of the kernels from smoothing lengths. */
+/* Writes the lengths of the kernels: smoothing lengths h times the factors of widening. */
 void mcor_widen_lengths(
   const mcor_input* input, int64_t first, int count, const double* h, double* out);
 

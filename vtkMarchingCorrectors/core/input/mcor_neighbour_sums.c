@@ -2,11 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Sums over each particle's neighbours, for particles that lack what a surface needs: smoothing
- * lengths by neighbours, and densities from masses. They run on the host, in double precision. A
- * tree of boxes over particles along a Morton curve finds neighbours, because smoothing lengths are
- * unknown, or vary by any factor. Each sum goes along the curve, so it does not depend on the order
- * of the input, on threads, or on particles outside the support. So a rank finds the same bits as
- * one process if it has all particles that its sums reach. */
+ * lengths by neighbours, and densities from masses. The sums are made on the host, in double
+ * precision. A tree of boxes over particles along a Morton curve finds neighbours, because
+ * smoothing lengths are unknown, or vary by any factor. Each sum adds particles in the order of the
+ * curve, so it does not depend on the order of the input, on threads, or on particles outside the
+ * support. So a rank finds the same bits as one process if it has all particles that its sums
+ * reach. */
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
@@ -287,8 +288,8 @@ static void mcor_list_neighbours(
   }
 }
 
-/* Returns sum_j W h^d or, for densities, sum_j m_j W h^d. Makes a new list if the last one is for a
- * shorter length, or a much longer one. */
+/* Returns sum_j W h^d or, for densities, sum_j m_j W h^d. d: the dimension. Finds the neighbours
+ * anew if `list` was made for a shorter length, or for a much longer one. */
 static double mcor_sum_at(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
@@ -316,8 +317,8 @@ static double mcor_length_step(double h, int further)
   return ldexp(4 + quarter, (number - quarter) / 4 - 4);
 }
 
-/* Solves for the smoothing length at a place, between two steps, by false position with some
- * bisection. Neither the steps nor the result depend on the first guess. */
+/* Returns the smoothing length of sorted particle i. Finds it between two steps by false position
+ * with some bisection. Neither the steps nor the result depend on the first guess. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;

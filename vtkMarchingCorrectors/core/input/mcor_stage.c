@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Copies the particles that a call needs from the caller's arrays to the device, in its units and
- * in input order; in a periodic box their images, too. */
+/* Copies the particles that a call needs from the caller's arrays to the device, in the device's
+ * units and in input order. In a periodic box, copies their images, too. */
 
 #include "mcor_stage.h"
 #include "mcor_adaptive.h"
@@ -15,16 +15,16 @@
 #include <string.h>
 
 /* Returns the factor by which a particle's volume or mass is multiplied for the device: volumes are
- * then in cubes, masses are shares of the largest one. 1 if the particles have neither; see the
- * volume formulas of mcor_input. */
+ * then in cubes, masses are shares of the largest mass. Returns 1 if particles have neither volumes
+ * nor masses; see the volume formulas of mcor_input. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
   const mcor_options* options = context->run.options;
   if (!mcor_needs_density(input))
   {
-    /* An area times this factor and its particle's smoothing length is a volume, see
-     * mcor_plane.h. */
+    /* In two dimensions, a volume is an area times `lift` times the particle's smoothing length,
+     * see mcor_plane.h. */
     const double lift = context->space.flat
       ? mcor_kernel_of(options->sph_kernel)->plane_factor * options->h_scale
       : 1;
@@ -107,8 +107,8 @@ static int mcor_images_of(
     staging->reach, at, mcor_reach_of(staging->reach, h, chunk->level[i]), images);
 }
 
-/* Marks the particles of [first, last) that may reach the box, by one test of each coordinate that
- * has no period. Only few of them fail the exact test of their images later. */
+/* Marks the particles of [first, last) that may reach the box. Tests each coordinate without a
+ * period once. Only few marked particles fail the exact test of their images later. */
 static void mcor_mark_near(const mcor_staging* staging, int64_t first, int64_t last)
 {
   const mcor_reach_box* reach = staging->reach;
@@ -137,8 +137,8 @@ static void mcor_mark_near(const mcor_staging* staging, int64_t first, int64_t l
   }
 }
 
-/* Returns the length of the next chunk to read, from *begin on; 0 at the end. Passes over chunks
- * without a marked particle. */
+/* Returns the length of the next chunk to read, which begins at *begin; 0 at the end. Advances
+ * *begin past chunks without a marked particle. */
 static int mcor_next_chunk(const mcor_staging* staging, int64_t* begin, int64_t last)
 {
   int count = mcor_chunk_of(last - *begin);
@@ -150,7 +150,7 @@ static int mcor_next_chunk(const mcor_staging* staging, int64_t* begin, int64_t 
   return count;
 }
 
-/* Counts the images that a slice stages, and keeps the marks of particles that have any. */
+/* Counts the images that a slice stages. Unmarks the particles of which no image is staged. */
 static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_staging* staging = data;
@@ -269,8 +269,9 @@ static double mcor_weight_limit(const mcor_context* context)
   return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
 }
 
-/* Stages a chunk from element *to on, and advances *to. Stops at a particle that is too heavy, or
- * that has changed: it lies outside of the measured bounds, on which all later steps rely. */
+/* Stages a chunk from element *to on, and advances *to. Stages nothing from the first chunk on that
+ * has a particle with too large a weight, or a particle beyond the measured bounds, on which all
+ * later steps rely: the caller's arrays have changed. */
 static void mcor_stage_chunk_at(
   const mcor_staging* staging, mcor_stage_slice* slice, mcor_stage_chunk* chunk, int64_t* to)
 {
@@ -292,7 +293,7 @@ static void mcor_stage_chunk_at(
   {
     return;
   }
-  /* Mostly all lengths are the same, so one division is enough. */
+  /* Usually all lengths of a chunk are the same, so one division is enough. */
   const double h = chunk->h[0], inverse = scaled_cube / h;
   const bool are_same = mcor_is_all_within(chunk->h, count, h, h);
   for (int i = 0; i < count; ++i)
@@ -427,7 +428,8 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
   staging->view_count = MCOR_STAGE_VIEWS;
   for (int i = 0; i < MCOR_STAGE_VIEWS && count > 0; ++i)
   {
-    /* The search grid may take a buffer as it is, see mcor_move_particles. */
+    /* Buffers are padded as in the search grid, which may take over a buffer, see
+     * mcor_move_particles. */
     const size_t padded = views[i].bytes + MCOR_PADDING * context->cl.real_size;
     MCOR_TRY(mcor_reserve(context, buffers[i], padded));
     MCOR_TRY(mcor_map(context, buffers[i], views[i].bytes, true, views[i].data));
@@ -490,7 +492,8 @@ mcor_status mcor_stage(mcor_staging* staging)
   const mcor_measure* m = &context->measure;
   const bool one_volume = !input->volume.data && !input->mass.data && !input->density.data;
   mcor_reach_box reach;
-  /* Solids' lengths are not measured, and their sizes are negative. */
+  /* With solids, lengths and sizes may differ: solids' lengths are not measured, and their sizes
+   * are negative. */
   staging->one_inv_h = !input->solid && !mcor_is_given(&input->widening) && m->h_min == m->h_max;
   staging->one_size = !input->solid && one_volume && (staging->one_inv_h || !context->space.flat);
   staging->size_scale = mcor_size_scale(context, input);

@@ -20,16 +20,18 @@ typedef struct mcor_suspicion
   const mcor_surface* surface;
 } mcor_suspicion;
 
-/* Bounds of the ratio smoothing length / distance of the nearest particle, which hardly depends on
- * free surfaces and walls. The ratio is up to 1.7 for most solvers, and up to 2.2 for DualSPHysics;
- * Wendland kernels bear more. */
+/* Bounds of the ratio smoothing length / distance of the nearest particle. Free surfaces and walls
+ * hardly change the ratio. It is up to 1.7 for most solvers, and up to 2.2 for DualSPHysics.
+ * Wendland kernels allow more. */
 #define MCOR_LEAST_RATIO 0.9
 #define MCOR_MOST_RATIO 2.2
 #define MCOR_MOST_RATIO_WENDLAND 2.6
 #define MCOR_LEAST_RATIO_QUINTIC 0.7
 
-/* Particles at random places have near neighbours, but not many in all, so there are limits for all
- * neighbours, too: numbers per (support / smoothing length)^3. Sheets and drops have few. */
+/* A nearest particle may be very near by chance. So smoothing lengths are called too long only if
+ * there are also many neighbours in all: more than this number times (support / smoothing
+ * length)^3. If the ratio is above MCOR_SHEET_RATIO, the lower limit suffices, because sheets and
+ * drops have few neighbours. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
@@ -291,8 +293,8 @@ static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
  * nobody sees them. If they move the field by more than its tolerance, another warning says so. */
 #define MCOR_MOST_POSITION_ERROR 1e-4
 
-/* Errors of positions below this share of the cube size need no warning either; short grids have
- * them. */
+/* Errors of positions below this share of the cube size need no warning either: even short grids
+ * have such errors. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
 static mcor_message mcor_warn_precision(const mcor_suspicion* s)
@@ -342,7 +344,7 @@ static mcor_message mcor_warn_far(const mcor_suspicion* s)
     : mcor_say(MCOR_SAY(PARTICLES_FAR), (long long)n->far_particles, first, x[0], x[1], x[2]);
 }
 
-/* Returns whether another warning already names the cause of this one. */
+/* Returns whether another warning already names the cause of `warning`. */
 static bool mcor_is_explained(mcor_warning warning, const mcor_suspicion* s)
 {
   const bool follows = warning == MCOR_WARN_TRIMMED || warning == MCOR_WARN_PRECISION ||

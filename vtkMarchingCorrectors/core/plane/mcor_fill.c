@@ -1,14 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Filling. First the field is evaluated at all nodes that particles reach. When an iso value's
- * lines are trimmed, their vertices and cuts, and which nodes are above, are kept. When all lines
- * are made, each node is in a band between two successive iso values. The vertices of lines divide
- * the border of each square into parts of one band each. Parts that lines join enclose a polygon of
- * their band, and trimming leaves triangles of it. Their corners are points of lines, nodes, and
- * points where trimming cuts lattice edges; triangles beside each other share these. A square is
- * filled if its nodes are valid, like squares with lines. Borders are followed with the inside on
- * the left. */
+/* Filling: makes triangles of the regions between lines, in two dimensions. First the field is
+ * evaluated at all nodes that particles reach. For each iso value, three things are kept: the
+ * vertices of its lines, the points where trimming cuts these lines, and which nodes are above the
+ * iso value. When all lines are made, each node is in a band between two successive iso values.
+ *
+ * The vertices of lines divide the border of each square of the lattice into parts, and each part
+ * lies in one band. Parts of the border and the lines that join them enclose a polygon, which lies
+ * in one band, too. Trimming cuts off a part of the polygon; the rest becomes triangles. Corners of
+ * triangles are points of lines, nodes, and points where trimming cuts lattice edges. Neighbouring
+ * triangles share their corners. A square is filled only if all its nodes are valid, as for lines.
+ * Borders are followed with the inside on the left. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -48,7 +51,8 @@ typedef struct mcor_fill_corner
   bool falls; /* at this corner, the border goes from above the line to below it */
   int band;   /* band of this part of the border */
   bool done;  /* a polygon has this part */
-  /* The part is number `part` of the edge along `axis` from this lower node. */
+  /* This part of the border is number `part` among the parts of a lattice edge: the edge that goes
+   * up from `node` along `axis`. */
   cl_int node[3];
   int axis, part;
 } mcor_fill_corner;
@@ -173,8 +177,9 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Adds 1 to the band of each node that is above this iso value. If marching has evaluated a node,
- * marching decides, because the lines are made from its results. */
+/* Keeps the vertices of the current lines, and adds 1 to the band of each node that is above the
+ * iso value. For nodes that marching has evaluated, marching's result counts, because the lines are
+ * made from it. */
 mcor_status mcor_take_lines(mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;
@@ -230,7 +235,8 @@ static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
   return mcor_cap_key(edge) ^ (uint64_t)part << 44;
 }
 
-/* Adds side s of a square to its border, without the node at the end of the side. */
+/* Appends the corners on side s of the current square to fill->border: the node at the beginning of
+ * the side, then the vertices of lines. The node at the end belongs to the next side. */
 static mcor_status mcor_add_border_side(mcor_filling* fill, int s)
 {
   const int64_t begin = mcor_corner_index(&fill->nodes, fill->lowest, s),
@@ -290,8 +296,9 @@ static uint64_t mcor_fill_node_key(const cl_int node[3])
   return (uint64_t)(v >> 2) << 24 | (uint64_t)(u >> 2) << 4 | (uint64_t)((v & 3) << 2 | (u & 3));
 }
 
-/* Finds the point where trimming has cut a line; or, on the border, finds or makes the point where
- * trimming cuts the lattice edge. */
+/* Finds the point where trimming cuts the side of a polygon between two corners. If the side is a
+ * line, trimming has made the point before. If the side is on the border, finds the point of a
+ * neighbouring square, or makes the point. */
 static mcor_status mcor_cut_fill_side(
   void* data, const mcor_cap_corner* from, const mcor_cap_corner* to, mcor_cap_corner* cut)
 {
@@ -340,8 +347,9 @@ static mcor_status mcor_add_polygon(mcor_filling* fill, int i)
     {
       next->begins_line = true;
       corners[count++] = &next->corner;
-      /* Goes to the other end of the line. A level has two corners on the border, or four. With
-       * four, its two lines run around the parts below the level, or around the parts above. */
+      /* Goes to the other end of the line. A line's level has two corners on the border, or four.
+       * With four, the level has two lines. They surround the nodes below the level if `joined`,
+       * else the nodes above. */
       const int level = next->level;
       const bool joined = mcor_find_number(&fill->lines[level].joined, (uint64_t)fill->lowest) >= 0;
       const int step = next->falls == joined ? 1 : fill->count - 1;
@@ -396,9 +404,10 @@ static int mcor_compare_cuts(const void* x, const void* y)
   return (a[i] > b[i]) - (a[i] < b[i]);
 }
 
-/* Makes the points that lines lack, and numbers them in the surface: first the nodes that triangles
- * use, then the cuts. They are appended as a mesh of their own, as if they were vertices of caps,
- * and get the iso values and residuals of their bands. */
+/* Appends to the surface the points that lines lack: first the nodes that triangles use, then the
+ * points where trimming cuts lattice edges. Writes the points' numbers to fill->number. Points are
+ * appended as if they were vertices of caps, in a mesh of their own. They get the iso value of the
+ * line below their band, and the residual from this iso value. */
 static mcor_status mcor_make_fill_points(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: turns coordinates into the plane and back; joins lines to polylines, and makes their
- * normals if the gradient gives none. Triangles of filled regions follow the triangles that stand for
- * lines. */
+/* Two dimensions: turns coordinates into the plane and back; joins lines to polylines, and makes
+ * their normals if the gradient gives none. In surface->triangles, a line is a triangle with two
+ * equal corners. Triangles of filled regions come after the lines. */
 
 #include "mcor_plane.h"
 #include "mcor_adaptive.h"
@@ -185,8 +185,8 @@ typedef struct mcor_line_ends
   bool done; /* the line that begins here is already in a polyline */
 } mcor_line_ends;
 
-/* Whether a triangle stands for a line: two of its corners are the same. Other triangles are
- * filled. */
+/* Whether a triangle stands for a line: two of its corners are the same. Other triangles belong to
+ * filled regions. */
 static bool mcor_is_line(const int32_t* t)
 {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -255,8 +255,8 @@ static double mcor_area_of(const double* a, const double* b, const double* c)
 }
 
 /* Measures the length, and the area: the area of the filled region or, if all lines are closed, the
- * area that they enclose. A line adds the area of the triangle from the surface's first point to
- * the line. */
+ * area that they enclose. Each line adds the signed area of the triangle that it forms with the
+ * surface's first point. */
 static void mcor_measure_lines(mcor_surface* surface)
 {
   mcor_statistics* s = &surface->statistics;
@@ -286,8 +286,8 @@ static void mcor_measure_lines(mcor_surface* surface)
   }
 }
 
-/* Makes normals, to the right of the lines: at all points of a preview, or with triangle_normals;
- * else only where the gradient vanishes. */
+/* Makes normals from lines, to the right of the lines. In a preview, or with triangle_normals,
+ * makes the normals of all points, else only of points where the gradient vanishes. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;

@@ -35,8 +35,8 @@ mcor_status mcor_find_plane(
 /* Turns the copies *flat into the plane. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Turns positions into the plane: *turned, with the data *flat, which the caller frees. Points off
- * the plane become NaN; particles lie in it. */
+/* Turns positions into the plane: *turned, with the data *flat, which the caller frees. If
+ * are_points, positions may lie off the plane and then become NaN. */
 mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* positions,
   int64_t count, bool are_points, mcor_array* turned, double** flat);
 /* Turns the sides of a box. Across the plane, the box becomes infinite if it contains the plane,
@@ -44,7 +44,8 @@ mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* posi
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
 /* Turns the measures over all particles into the plane, or back. */
 void mcor_turn_measure(mcor_measure* measure, bool back);
-/* Turns the statistics of the lattice and the extent back. */
+/* Turns the statistics that belong to axes (lattice, extent, far_place) back to the caller's
+ * axes. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
 
 /* Returns the caller's axis of turned coordinate a; a = 2 is the constant coordinate. */
@@ -66,11 +67,11 @@ void mcor_unflatten_doubles(
 /* Keeps only the cells that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
-/* Makes normals from lines if the gradient gives none. Needs the lines in the ring of cells around
- * the box, too. */
+/* Makes normals from lines if the gradient gives none. Lines in the cells just outside of the box
+ * must exist, too. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
-/* Makes the surface's polylines from the lines that its triangles stand for, and turns the surface
- * back. */
+/* Makes the surface's polylines from the triangles that stand for lines, and turns the surface back
+ * to the caller's axes. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
 
 /* mcor_fill.c. If lines are to be filled, mcor_begin_fill checks that they can be, and evaluates
@@ -81,7 +82,8 @@ mcor_status mcor_begin_fill(mcor_context* context);
 mcor_status mcor_take_lines(mcor_context* context);
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);
 void mcor_end_fill(mcor_context* context);
-/* Runs after all iso values. Appends the filled triangles to the triangles that stand for lines. */
+/* Appends the triangles of the filled regions to the surface, after its lines, which are stored as
+ * triangles until the output. Call it once, after the last iso value. */
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface);
 
 #endif

@@ -466,7 +466,7 @@ static mcor_status mcor_read_lines(
 
 /* ---- the call ---- */
 
-/* Treats lines together, as many as have about MCOR_GAUGE_TOGETHER samples. */
+/* Treats the lines in groups of about MCOR_GAUGE_TOGETHER samples. */
 static mcor_status mcor_gauge_all(mcor_level_job* base)
 {
   mcor_gauge_job* job = (mcor_gauge_job*)base;

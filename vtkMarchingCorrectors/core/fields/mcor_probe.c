@@ -17,7 +17,8 @@
  * unordered points would have fewer of them. */
 #define MCOR_PROBE_BATCH (1 << 18)
 
-/* Fluid weight below which a mean has no digits; MCOR_LEAST_SUM in mcor_attribute.cl. */
+/* Where the fluid's weight is not above this, a mean has no correct digits, and the point is not
+ * valid. Equals MCOR_LEAST_SUM of mcor_attribute.cl. */
 #define MCOR_LEAST_WEIGHT 1e-30
 
 /* ---- points ---- */
@@ -442,9 +443,9 @@ static mcor_status mcor_run_probe(
   return MCOR_OK;
 }
 
-/* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the
- * free surface: without solids, unless they count in computed volumes and the caller's field is
- * not the weight sum. Returns whether solids are used. */
+/* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the free
+ * surface, without solids. Only if volumes are computed, and the caller's field is not the weight
+ * sum, are solids used, because they count in computed volumes. Returns whether solids are used. */
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
 {
   const bool uses_solids =

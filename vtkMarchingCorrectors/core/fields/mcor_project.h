@@ -37,7 +37,8 @@ typedef struct mcor_column_side
 /* Returns the reach of a kernel of h = 1 along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
-/* Returns the side of a rectangle at `at` (in h) along x (axis 0) or y (axis 1). */
+/* Returns the table's cell, and the weights, for a rectangle's side at `at` (in h) along x (axis 0)
+ * or y (axis 1). */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
 /* Writes to `sums` E at the corners where `count` sides along x meet one side along y. */
 void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, int count,

@@ -244,7 +244,7 @@ mcor_status mcor_check_input(
     return MCOR_OK;
   }
   MCOR_FAIL_IF(!input->positions.data, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_POSITIONS));
-  /* The particles of a search grid that still holds were checked when it was made. */
+  /* If the kept search grid is of these particles, they were checked when the grid was made. */
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input))
   {
     MCOR_TRY(mcor_check_particles(context, input));

@@ -43,8 +43,8 @@ double mcor_size_scale(mcor_context* context, const mcor_input* input);
 /* Stages the input. The caller has set context and input. */
 mcor_status mcor_stage(mcor_staging* staging);
 
-/* Returns by how many bits the positions of particles with this support are shorter than
- * fixed-point numbers, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
+/* Returns how many of the lowest bits are always 0 in the fixed-point positions of particles with
+ * this support, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level);
 
 #endif

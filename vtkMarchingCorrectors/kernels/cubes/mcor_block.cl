@@ -3,10 +3,10 @@
 
 /* Finds the blocks: cubes of 8 x 8 x 8 bricks that may have surface. A few large cubes cover the
  * whole lattice. Active cubes are divided into 8, level by level, down to blocks. A cube is
- * inactive if it and all cubes around it are void or certain of their side of the iso value, and
- * all certain ones are on the same side: no crossed edge is in the cube or leads out of it. Empty
- * space costs next to nothing, and so does space that coarse particles fill with values far from
- * the iso value.
+ * inactive if the cube and all cubes around it are void (no cell is valid there) or certainly on
+ * one and the same side of the iso value. Then no crossed edge is in the cube or leads out of it.
+ * Empty space costs next to nothing. Space that coarse particles fill with values far from the iso
+ * value costs next to nothing, too.
  *
  * Cubes of one size are sorted by key, like blocks, so mcor_find_block finds them. */
 
@@ -23,7 +23,8 @@ __kernel void mcor_block_all(
 
 #if MCOR_OF_FIELD
 /* One work-item = one cube, 32 << level nodes long: cube index[item], or cube `item` if `index` is
- * NULL. Reads the particles that reach the cube. Writes the cube's state. */
+ * NULL. Reads the particles that reach the cube. Writes the cube's state: on which sides of the iso
+ * value its nodes may be. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const int* index,
   __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS,
   __global uchar* states)
@@ -42,8 +43,8 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
 #endif
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube. Reads the states of cubes. Writes whether it is inactive. A neighbour
- * that does not exist was part of an inactive larger cube. */
+/* One work-item = one cube. Reads the states of the cube and of the cubes around it. Writes whether
+ * the cube is inactive. A missing neighbour was part of a larger, inactive cube. */
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {
@@ -59,14 +60,14 @@ __kernel void mcor_block_find_inactive(
   inactive[i] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
 }
 
-/* Returns part c (bits x, y, z) of a cube. */
+/* Returns child c (bits x, y, z) of a cube: one of the 8 cubes into which the cube is divided. */
 int4 mcor_block_part(int4 cube, int c)
 {
   return (int4)(2 * cube.x, 2 * cube.y, 2 * cube.z, cube.w - 1) + mcor_up(c);
 }
 
-/* One work-item = one cube. Counts its children, the cubes into which it is divided: none if it is
- * inactive. */
+/* One work-item = one cube. Writes how many children of the cube are on the lattice. An inactive
+ * cube has no children. */
 __kernel void mcor_block_count(const int count, __global const mcor_rung* rungs,
   __global const ulong* keys, __global const uchar* inactive, __global int* counts)
 {
@@ -80,7 +81,8 @@ __kernel void mcor_block_count(const int count, __global const mcor_rung* rungs,
   counts[i] = children;
 }
 
-/* One work-item = one cube. Reads the scanned counts. Writes the keys of its children. */
+/* One work-item = one cube. Reads the prefix sums of the counts. Writes the keys of the cube's
+ * children. */
 __kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
   __global const ulong* keys, __global const int* scanned, __global ulong* child_keys)
 {
@@ -97,8 +99,8 @@ __kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
   }
 }
 
-/* One work-item = one brick that has a slot. Requests the brick again if the values of its nodes
- * are known. */
+/* One work-item = one brick that has a slot. If the values of the brick's nodes are known, requests
+ * a slot for the brick again. */
 __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The bound of complete seeds [III-C]: finds, from the particles that reach a box, whether its
- * nodes are certainly void, above or below.
+/* The bound of complete seeds [III-C]: finds, from the particles that reach a box, whether all
+ * nodes in the box are certainly void, above the iso value or below it.
  *
  * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the sign of
  * field - iso is the sign of F = sum c_j w_j - level, with level = 0 (Shepard) or iso. At every
@@ -69,8 +69,8 @@ realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side
   return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * (inv_h * off));
 }
 
-/* Finds the least and greatest w in the boxes, at their farthest and nearest points: w falls with
- * the distance. */
+/* Finds the least w at the farthest point of each box, and the greatest w at the nearest point,
+ * because w falls with the distance. */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
@@ -79,7 +79,7 @@ void mcor_bound_weights(
 }
 #endif
 
-/* Sums over the particles of a box. */
+/* Sums over the particles that reach a box. */
 typedef struct
 {
   int count;

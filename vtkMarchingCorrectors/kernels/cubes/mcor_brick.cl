@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gives slots to bricks [III-B]. The functions for a brick's number and slot are in
- * mcor_virtual_grid.cl. */
+/* Gives slots, i.e. places for values and masks, to the bricks that need them [III-B]. The
+ * functions for a brick's number and slot are in mcor_virtual_grid.cl. */
 
 /* One work-item = one word, which has a bit for each of 32 bricks. Writes how many bits are set. */
 __kernel void mcor_brick_count(
@@ -12,9 +12,10 @@ __kernel void mcor_brick_count(
   counts[word] = (int)popcount(brick_bits[word]);
 }
 
-/* One work-item = one word, which has a bit for each of 32 bricks. Reads the bits and the scanned
- * counts. If a brick's bit is set, writes to its slot the brick's coordinates, and its seeds: all
- * its cells if its bit in seed_bits is set, else none. */
+/* One work-item = one word, which has a bit for each of 32 bricks. Reads the bits and the prefix
+ * sums of their counts. For each brick whose bit is set, writes to the brick's slot the coordinates
+ * and the seed cells. All cells of a brick are seeds if the brick's bit in seed_bits is set, else
+ * none. */
 __kernel void mcor_brick_fill(
   MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
@@ -49,9 +50,9 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* One work-item = one brick. Writes which of its nodes to evaluate: all if they are not known yet,
- * else none. With leaves of several levels, a slot whose state is certain is evaluated only if
- * mcor_leaf_need marked it, and a void slot never. */
+/* One work-item = one brick. Writes which of the brick's nodes are to be evaluated: all nodes if
+ * their values are not known yet, else none. With leaves of several levels, a brick whose state is
+ * certain is evaluated only if mcor_leaf_need marked its slot. A void brick is never evaluated. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
@@ -61,9 +62,9 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
   need[slot] = known[slot] || idle ? 0 : ~0UL;
 }
 
-/* One work-item = one brick of the old set. Moves the brick's data to its slot in the new set, if
- * it has one. words: how many 4-byte words the values of a brick's nodes take. Either all values of
- * a brick are known, or none. */
+/* One work-item = one brick of the old set. If the new set has the brick, moves the brick's data to
+ * the brick's slot in the new set. words: how many 4-byte words the values of a brick's nodes take.
+ * The values of a brick are either all known or all unknown. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,

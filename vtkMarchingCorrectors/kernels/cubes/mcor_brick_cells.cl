@@ -22,7 +22,8 @@ ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
   return cells;
 }
 
-/* Gathers the masks of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. */
+/* Gathers the masks of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. A
+ * neighbour without a slot gets the mask 0. */
 MCOR_ONE_COPY void mcor_brick_masks(
   __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)
 {
@@ -34,8 +35,8 @@ MCOR_ONE_COPY void mcor_brick_masks(
   }
 }
 
-/* Returns the nodes or cells of a brick on some of its sides. x, y, z: 0 the first layer along the
- * axis, 2 the last layer, 1 all layers. */
+/* Returns a mask of the nodes or cells in some layers of a brick. x, y, z: the layers along the
+ * axis: 0 the first, 1 all, 2 the last. */
 ulong mcor_on_sides(int x, int y, int z)
 {
   return (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &

@@ -18,8 +18,8 @@ MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
   }
 }
 
-/* Returns the cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes
- * on both sides. */
+/* Returns the cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on
+ * both sides of the iso value. */
 ulong mcor_cell_faces(const ulong* corners, int axis, int side)
 {
   ulong some = 0, all = ~0UL;
@@ -45,7 +45,8 @@ ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
   return some & ~all & usable;
 }
 
-/* Makes masks of the corners of a brick's cells. */
+/* Makes masks of the corners of a brick's cells, see mcor_cell_corners, from the node masks of all
+ * bricks. */
 void mcor_corners_of(
   __global const ulong* masks, __global const int* neighbours, int slot, ulong* corners)
 {
@@ -53,9 +54,10 @@ void mcor_corners_of(
   mcor_cell_corners(corners);
 }
 
-/* Finds, for the edges of a brick along an axis, the bits of the four cells around each edge. b and
- * c are the other two axes. q[0]: the cell above the edge along b and c; q[1]: below along b; q[2]:
- * below along c; q[3]: below along both. m: cell masks of the brick and its lower neighbours. */
+/* Finds, for the edges of a brick along an axis, the bits of the four cells (quadrants) around each
+ * edge. b and c are the other two axes. q[0]: the cell at higher b and higher c than the edge;
+ * q[1]: at lower b, higher c; q[2]: at higher b, lower c; q[3]: at lower b, lower c. m: cell masks
+ * of the brick and its lower neighbours. */
 MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 {
   const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
@@ -65,16 +67,17 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
   q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
 }
 
-/* A brick has MCOR_EDGE_MASKS masks of edges, three for each axis: crossed edges; crossed edges
- * next to a cell that is not used; pinched edges. Only two cells around a pinched edge are used,
- * opposite to each other. Their triangles form two fans, so the edge has two vertices. The second
- * vertex is for the cell that is below the edge along the first of the other two axes. */
+/* A brick has MCOR_EDGE_MASKS masks of edges. Mask `axis` has the crossed edges along the axis;
+ * mask 3 + axis the crossed edges next to a cell that is not used; mask 6 + axis the pinched edges.
+ * Only two cells around a pinched edge are used, and they lie opposite to each other. Each of these
+ * two cells has a vertex of its own on the edge. The second vertex is for the cell at lower
+ * coordinates along the first of the other two axes. */
 
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
-/* Returns the number, among the vertices of the brick, of the first vertex on the edges from
- * node n. */
+/* Returns how many vertices of a brick lie on edges from nodes before node n. e: the brick's masks
+ * of edges. */
 int mcor_edge_rank(__global const ulong* e, int n)
 {
   const ulong below = (1UL << n) - 1;
@@ -86,9 +89,9 @@ int mcor_edge_rank(__global const ulong* e, int n)
   return rank;
 }
 
-/* Finds the vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z. A
- * pinched edge gets -1 - v, with v the first of its two vertices. upper: slots of the brick's upper
- * neighbours, or -1. */
+/* Writes the vertex of each crossed edge of a brick's cells to numbers[axis][x + 5 y + 25 z], where
+ * (x, y, z) is the edge's lower node in the brick. A pinched edge gets -1 - v, where v is the first
+ * of its two vertices. upper: slots of the brick's upper neighbours, or -1. */
 void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {
@@ -131,9 +134,9 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* Returns the row that the faces of a cell choose among the rows of its case: each ambiguous face
- * that joins its nodes above the iso value sets a bit in the row's number. corners: see
- * mcor_cell_corners. */
+/* Returns which of the rows of a cell's case, i.e. ways to triangulate the cell, is used. Each
+ * ambiguous face whose nodes above the iso value are joined sets a bit in the row's number.
+ * corners: see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -154,15 +157,16 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   return row;
 }
 
-/* Parameters that say how cells are cut: the rows of all cases, and, if the topology is resolved,
- * the decisions on faces and cells. */
+/* Parameters that say how cells are cut: the rows (ways to triangulate a cell) of all cases, and,
+ * if the topology is resolved, the field's decisions on faces and cells. */
 #define MCOR_CUT_PARAMS                                                                            \
   const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
     __global const int *cases, __global const mcor_cell_row *rows
 #define MCOR_CUT_ARGS resolved, neighbours, decisions, cases, rows
 
-/* Returns how a cell without finer nodes is cut: by the field's decisions if the topology is
- * resolved, else with no regions joined. Adds 1 to *tunnels if the cell has a tunnel. */
+/* Returns the row by which a cell without finer nodes is triangulated. If the topology is resolved,
+ * the field's decisions choose the row. Else no ambiguous face joins its nodes above the iso value.
+ * Adds 1 to *tunnels if the cell has a tunnel. */
 __global const mcor_cell_row* mcor_cell_cut(
   const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell, int* tunnels)
 {

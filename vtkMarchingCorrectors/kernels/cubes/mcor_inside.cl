@@ -4,8 +4,8 @@
 /* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that the
  * nodes are above the iso value of the free surface, so that no other particles are read. */
 
-/* Returns roughly which share of the query's box, widened on all sides by the query's reach, the
- * tile's particles fill. */
+/* Returns roughly which share of a box the tile's particles fill. The box is the query's box,
+ * widened on all sides by the query's reach. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 {
   realv volume = 0, inv_h = 0;
@@ -24,11 +24,12 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* A brick whose surroundings are filled less than this counts as near the surface. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
-/* The share of each particle's support within which the proof looks at particles. */
+/* The proof reads a particle only within this share of the particle's support. */
 #define MCOR_INSIDE_SHARE 0.5f
 
-/* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries it,
- * and with several levels mcor_seed_prove; else mcor_seed_brick tries it. */
+/* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries the
+ * proof. With several levels, mcor_seed_prove tries it, too. If a work-item evaluates single nodes,
+ * mcor_seed_brick tries it. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
@@ -62,11 +63,11 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether the close particles lift the nodes on the leaf's far sides above the iso value, too. Only
- * nodes of the leaf's own level count: finer nodes on these sides belong to finer leaves, whose own
- * proofs cover them. If the proof fails on a finer leaf's far sides, beside a larger leaf, the
- * finer leaf is chosen, and the march goes on from it. tile: particles close to any of the leaf's
- * nodes. */
+/* Whether the close particles also lift the nodes on the leaf's far sides (its upper faces) above
+ * the iso value. Only nodes of the leaf's own level count. Finer nodes on the far sides belong to
+ * finer leaves, which have proofs of their own. If the proof fails on the far sides of a leaf
+ * beside a larger leaf, the smaller leaf is chosen as one that may have surface. tile: particles
+ * close to any of the leaf's nodes. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {

@@ -35,8 +35,9 @@ int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
   return ((x | y | z) & 1) == 0 && own.x >= 0 ? own : mcor_leaf_place(leaf, x, y, z, true);
 }
 
-/* Returns the parts of a leaf that have finer nodes, as bits MCOR_DIRECTION. A finer leaf touches
- * each such part, so edges or faces of cells in the part have a node in their middle. */
+/* A leaf has 27 parts: its inside, 6 faces, 12 edges and 8 corners. Returns the parts that a finer
+ * leaf touches, as bits MCOR_DIRECTION. Edges or faces of cells in such a part have a node in their
+ * middle. finer: the split bricks around the leaf, as bits MCOR_DIRECTION. */
 uint mcor_leaf_hanging(uint finer)
 {
   uint hanging = 0;
@@ -53,9 +54,9 @@ uint mcor_leaf_hanging(uint finer)
   return hanging;
 }
 
-/* Makes masks of the corners of the leaf's cells, from the masks of the leaf and of the 7 bricks up
- * from it. A brick without a slot of the leaf's level is finer: its nodes on the leaf's side are
- * looked up one by one. */
+/* Makes masks of the corners of the leaf's cells, from the masks of the leaf and of its 7
+ * neighbours at higher coordinates. A neighbour without a slot of the leaf's level is split into
+ * finer bricks, so the nodes that it shares with the leaf are looked up one by one. */
 void mcor_leaf_masks(const mcor_leaf* leaf, __global const ulong* masks, ulong m[8])
 {
   for (int d = 0; d < 8; ++d)
@@ -92,15 +93,16 @@ mcor_leaf mcor_leaf_load(int i, int plane, __global const uint* finer, __global 
   return leaf;
 }
 
-/* Returns where in the leaf a coordinate of 0 to 8 lies: on the first side, within, or on the last
- * side. */
+/* Returns where in the leaf a coordinate of 0 to 8 lies: 0 on the first side, 1 within the leaf, 2
+ * on the last side. */
 int mcor_leaf_zone(int u)
 {
   return u == 0 ? 0 : u == 8 ? 2 : 1;
 }
 
-/* Nodes of a cell as bits, see mcor_adaptive_cell.h. used: the cell is valid at all nodes, and has
- * nodes on both sides of the iso value. */
+/* Nodes of a cell as bits, numbered as in mcor_adaptive_cell.h. split: nodes in the middle of edges
+ * and faces; above: nodes above the iso value; used: the cell is valid at all nodes, and has nodes
+ * on both sides of the iso value. */
 typedef struct
 {
   uint split, above;
@@ -133,15 +135,17 @@ mcor_adaptive_nodes_of mcor_leaf_cell(const mcor_leaf* leaf, int cell)
   return nodes;
 }
 
-/* An edge of a cell: its slot, lower node and axis, and, as bits, the quadrants around the edge
- * that the cell fills, see mcor_cell_around. */
+/* An edge of a cell. slot, node: the slot of the edge's lower node, and the node's number in the
+ * slot. quadrants: which of the four quarters around the edge the cell fills, as bits q of
+ * mcor_cell_around. */
 typedef struct
 {
   int slot, node, axis;
   uint quadrants;
 } mcor_leaf_edge;
 
-/* Returns a cell's edge along an axis from node `lower`. */
+/* Returns a cell's edge, or half of a split edge, along an axis from node `lower`. Nodes are
+ * numbered as in mcor_adaptive_cell.h. */
 mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, int axis, int lower)
 {
   const int p[3] = { lower % 3, lower / 3 % 3, lower / 9 };
@@ -155,7 +159,8 @@ mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, in
   return edge;
 }
 
-/* Turns corners of a cell, with bits as in mcor_march_case, into bits of mcor_adaptive_cell.h. */
+/* Turns bits of a cell's corners, as in mcor_march_case, into bits of nodes, as in
+ * mcor_adaptive_cell.h. */
 uint mcor_leaf_corner_nodes(int corners)
 {
   uint above = 0;
@@ -166,7 +171,8 @@ uint mcor_leaf_corner_nodes(int corners)
   return above;
 }
 
-/* Marks an edge as used in some of the quadrants around it. */
+/* Marks an edge as an edge of used cells. around: the quadrants of the edge in which these cells
+ * are, as bits q of mcor_cell_around. */
 void mcor_leaf_mark_edge(const mcor_leaf_edge* edge, uint around, __global uint* quadrants)
 {
   __global uint* words = quadrants + edge->slot * (long)MCOR_QUADRANT_WORDS + 8 * edge->axis;
@@ -176,7 +182,7 @@ void mcor_leaf_mark_edge(const mcor_leaf_edge* edge, uint around, __global uint*
   }
 }
 
-/* Marks the edges that a cell beside finer leaves uses. */
+/* Marks the edges on which a cell beside finer leaves has vertices. */
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
 {
@@ -192,14 +198,16 @@ void mcor_leaf_mark(
   }
 }
 
-/* The leaves, and the nodes of all bricks; plane: cells are squares. */
+/* Parameters for the leaves and for the nodes of all bricks. plane: 1 if cells are squares in a
+ * plane. */
 #define MCOR_LEAF_PARAMS                                                                           \
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* One work-item = one leaf. Writes to its slot which of its cells are plain (no finer brick touches
- * them), and the leaf's number. If the leaf is mixed, reads its nodes' masks, and writes all its
- * cells if any cell is valid at all nodes and has nodes on both sides, else no cells. */
+/* One work-item = one leaf. Writes to the leaf's slot which cells are plain (no finer brick touches
+ * them), and the leaf's number. If the leaf is mixed (see mcor_leaf_need), also reads the masks of
+ * its nodes and writes `cells`: all cells of the leaf if any of them is valid at all nodes and has
+ * nodes on both sides of the iso value, else none. */
 __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global ulong* cells,
   __global ulong* plain, __global int* leaf_of)
 {
@@ -226,7 +234,8 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __g
   cells[slot] = some ? ~0UL : 0;
 }
 
-/* Returns the vertex of a cell's edge. axis, lower: the edge's slot in mcor_adaptive_cell.h. */
+/* Returns the number of the vertex on a cell's edge. axis, lower: the edge, as in
+ * mcor_leaf_edge_of. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {
@@ -237,7 +246,8 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   {
     number += (int)((e[a] >> edge.node & 1) + (e[6 + a] >> edge.node & 1));
   }
-  /* The second vertex of a pinched edge is for the cell below it along the first other axis. */
+  /* A pinched edge has two vertices. The second is for the cell at lower coordinates than the edge
+   * along the first of the other two axes. */
   const bool below = (edge.quadrants & 5) == 0;
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }

@@ -30,8 +30,9 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 }
 
 /* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are
- * split. Marks a leaf of the row as beside other levels if a finer leaf is anywhere around it, or
- * if a brick up from it is neither a leaf nor split. In a plane, only x and y count as up. */
+ * split into finer bricks. Marks a leaf of the row as beside other levels if any brick around the
+ * leaf is split, or if a neighbour at higher coordinates is neither a leaf nor split: a larger leaf
+ * is there. In a plane, neighbours at higher z do not count. */
 __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
   __global const uint* split, __global uint* beside)
 {
@@ -114,8 +115,8 @@ __kernel void mcor_leaf_choose(
   atomic_or(chosen + (m >> 5), found << (m & 31));
 }
 
-/* One work-item = one word of 32 bricks. Reads the scanned counts of chosen leaves. Writes the
- * leaves in order, and which bricks around each are split. */
+/* One work-item = one word of 32 bricks. Reads the prefix sums of the counts of chosen leaves.
+ * Writes the chosen leaves in order, and for each leaf which bricks around the leaf are split. */
 __kernel void mcor_leaf_list(MCOR_BLOCK_PARAMS, __global const uint* chosen,
   __global const int* scanned, __global const uint* split, __global int4* cells,
   __global uint* finer)

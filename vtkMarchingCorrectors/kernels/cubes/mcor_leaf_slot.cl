@@ -1,16 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the nodes of leaves that may have surface. Nodes are kept in slots of bricks, as
- * everywhere: in the leaf's slot, and in the slots that hold the far nodes of its cells and its
- * finer nodes. */
+/* Adaptive cubes: the nodes of leaves that may have surface. Values and masks of a leaf's nodes are
+ * in slots of several bricks: the leaf itself, the bricks that own the nodes on the leaf's far
+ * sides, and finer bricks around the leaf. */
 
 #define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
 
 /* Returns the bricks whose nodes a leaf needs. Bits 0 to 7 are bricks of its level (x, y, z up).
  * Bit 8 + x + 3 y + 9 z (each 0 to 2) is the brick of the finer level that is x, y, z bricks from
- * the finer brick at the leaf's lowest corner. If a leaf beyond a far side is finer, its bricks
- * also have the leaf's nodes on that side. In a plane, only bricks of its layer are needed. */
+ * the finer brick at the leaf's lowest corner. If a leaf beyond a far side is finer, the finer
+ * bricks also have the leaf's nodes on that side. In a plane, only bricks of the plane's layer are
+ * needed. */
 ulong mcor_leaf_wanted(uint finer, int plane)
 {
   ulong wanted = 0;
@@ -23,7 +24,7 @@ ulong mcor_leaf_wanted(uint finer, int plane)
   return plane ? wanted & MCOR_WANTED_IN_PLANE : wanted;
 }
 
-/* Returns the brick of bit `b`, with its level. */
+/* Returns the brick of bit b of mcor_leaf_wanted. */
 int4 mcor_leaf_wanted_brick(int4 leaf, int b)
 {
   const int f = b - 8;
@@ -57,8 +58,9 @@ __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int pla
   }
 }
 
-/* One work-item = one slot. Writes the state of its brick if the brick is a leaf. Writes the signs
- * of its nodes if the state is certain and the values are not known. */
+/* One work-item = one slot. Writes to `proofs` the state of the slot's brick, or MCOR_UNTRIED if
+ * the brick is no leaf. If the state is certain and the nodes' values are not known, the state
+ * decides which nodes are above and valid. */
 __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global const int4* bricks,
   __global const uint* leaves, __global const uchar* states, __global const ulong* known,
   __global uchar* proofs, __global ulong* above, __global ulong* valid)
@@ -74,8 +76,9 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   }
 }
 
-/* Marks the slots whose node values the crossed cells of a leaf need. Returns whether the leaf has
- * crossed cells. No finer leaves may be around the leaf. */
+/* Crossed cells are valid at all corners and have corners on both sides of the iso value. Marks the
+ * slots whose node values the crossed cells of a leaf need. Returns whether the leaf has crossed
+ * cells. No finer leaves may be around the leaf. */
 bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above,
   __global const ulong* valid, __global ulong* need)
 {

@@ -4,14 +4,16 @@
 /* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by lattice
  * edge.
  *
- * A cell is plain if no finer brick touches it, not even at a corner: all its nodes are in bricks
- * of its level. With several levels, mcor_march_hanging finds which other cells are used, and which
- * edges they use. */
+ * A cell is used if it is valid at all nodes and has nodes on both sides of the iso value. A cell
+ * is plain if no finer brick touches it, not even at a corner: all its nodes are in bricks of its
+ * level. With several levels, mcor_march_hanging finds which cells that are not plain are used, and
+ * marks their edges. */
 
-/* One work-item = one leaf. Reads its nodes' masks. Treats the cells of `used` that are not plain:
- * removes a cell from `used` if it is not valid at all nodes, or has no nodes on both sides. Marks
- * the edges of the other cells, and writes the number of their triangles, or lines, to the leaf's
- * slot. Adds to flat_loops the number of polygons of owned cells that lie in one face. */
+/* One work-item = one leaf. Reads the masks of the leaf's nodes. Treats only cells that are not
+ * plain. Removes such a cell from `used` if it is not valid at all nodes, or if all its nodes are
+ * on one side of the iso value. Marks the edges of the cells that stay, and writes how many
+ * triangles (in a plane, lines) they have to the leaf's slot. Adds to flat_loops the number of
+ * polygons of owned cells that lie in one face of the cell. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -124,8 +126,8 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
   }
 }
 
-/* Returns the value at the upper end of the edge from node n of a brick along an axis. An end
- * beyond the brick is in the next brick of its level, or in a finer brick. */
+/* Returns the value at the upper end of the edge from node n of a brick along an axis. If this end
+ * lies beyond the brick, its value is in the next brick of the same level, or in a finer brick. */
 real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 brick, int slot, int n,
   int axis, __global const real* node_value)
 {
@@ -145,9 +147,10 @@ real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 bric
   return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
 }
 
-/* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: the
- * lattice edge (lower node; axis, plus 4 if a cell around it is not used, plus 256 times the
- * level), and the values at its ends less the iso value. */
+/* One work-item = one brick. Reads the brick's crossed edges and the node values. Writes for each
+ * vertex its lattice edge: x, y, z of the edge's lower node; w = axis, plus 4 if a cell around the
+ * edge is not used, plus 256 times the level. Also writes the values at both ends of the edge, less
+ * the iso value. */
 __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
   __global const int* neighbours, __global const int4* bricks, __global const ulong* edges,
   __global const real* node_value, __global const int* vertex_base, const real iso,
@@ -180,9 +183,10 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
   }
 }
 
-/* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes
- * triangles, or lines, and, if wanted, the keys of their cells. This call owns the cells in the box
- * x0 ...; other ranks own the other cells in the box all_x0 .... */
+/* One work-item = one brick. Reads used cells, node masks, decisions and the numbering of vertices
+ * by edge. Writes triangles (in a plane, lines) and, if `follows` is set, the keys of their cells.
+ * This call owns the cells in the box x0 to z1. Other ranks own the other cells in the box all_x0
+ * to all_z1. */
 __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   __global const ulong* plain, __global const int* leaf_of, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,
   const int all_x0, const int all_y0, const int all_z0, const int all_x1, const int all_y1,
@@ -244,7 +248,8 @@ __kernel void mcor_march_replace(
   }
 }
 
-/* One work-item = one mask. Writes how many of its bits are also set in `within`. */
+/* One work-item = one mask. Writes how many bits are set in the mask and also in the mask of the
+ * same index in `within`. */
 __kernel void mcor_march_bits(
   const int count, __global const ulong* masks, __global const ulong* within, __global int* bits)
 {

@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Evaluation of the field at nodes. The host embeds mcor_node_lanes.cl for CPUs, or
- * mcor_node_point.cl for GPUs, which define the functions that differ. */
+ * mcor_node_point.cl for GPUs. Functions that differ between CPUs and GPUs are in these two
+ * files. */
 
 /* Nodes that one work-item evaluates: a whole brick if particles are gathered for many lanes at
  * once. The nodes form groups of MCOR_LANES. */
@@ -10,8 +11,8 @@
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 #define MCOR_ITEM_EXTENT (MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1)
 
-/* Sums at a group of nodes: s = sum V (A - A0) W, w = sum V W, and, with solids, the trimming
- * weight t. */
+/* Sums at a group of nodes: s = sum V (A - A0) W with A0 the shift of the particles' values, w =
+ * sum V W, and, with solids, the trimming weight t. */
 typedef struct
 {
   realv s, w, t;
@@ -21,8 +22,8 @@ typedef struct
 int mcor_group_of(int n);
 int mcor_lane_of(int n);
 
-/* Makes the sums at all groups of a query of mcor_node_query. The tile may already hold the query's
- * particles. */
+/* Makes the sums at all groups of nodes of a query, which mcor_node_query made. The tile may
+ * already hold the query's particles. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums);
 
 /* Adds all particles of a tile to the sums at MCOR_LANES nodes. x, y, z: the nodes, in cubes from
@@ -55,7 +56,8 @@ void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_s
 
 /* Returns the query for the nodes up to `extent` from node `first` of a brick. share: share of each
  * particle's support that counts. All bricks of a region count positions from the region's first
- * node, so a node's value does not depend on which tile of the region it is made from. */
+ * node, so a node's value is the same with the particles of the brick and with the particles of the
+ * whole region. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
   const mcor_grid* grid, int4 brick, int4 first, int4 extent, float share)
 {
@@ -97,8 +99,8 @@ void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global 
   }
 }
 
-/* Returns which nodes of a brick are above the iso value, and which are valid: their weight is
- * not below the node threshold. */
+/* Returns two masks of a brick's nodes: the nodes above the iso value, and the valid nodes. A node
+ * is valid if its weight is not below the node threshold; for a weight sum, all nodes are valid. */
 ulong2 mcor_node_signs(
   __global const real* value, __global const real* weight, real iso, real node_threshold)
 {

@@ -19,8 +19,9 @@ int mcor_lane_of(int n)
 /* The nodes of a group, in cubes from the query's origin. Weights are made in two steps, see
  * mcor_distance. */
 #if MCOR_TENSOR
-/* A group has few different x, y and z, so one evaluation gives w for them all: lanes 0 and 1 are
- * x, lanes 2 and 3 y, lanes from 4 on z. */
+/* The nodes of a group have two different x, two different y and MCOR_GROUP_Z different z. One
+ * evaluation gives w for all these coordinates: lanes 0 and 1 hold x, lanes 2 and 3 y, lanes from 4
+ * on z. */
 typedef struct
 {
   realv at;

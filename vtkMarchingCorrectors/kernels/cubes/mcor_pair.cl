@@ -15,8 +15,8 @@ bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reac
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells.
- * Sets flags[0] if a requested brick is new. */
+/* One work-item = one brick of a block. Requests slots for the bricks that have nodes of this
+ * brick's reached cells. Sets flags[0] if a requested brick is new. */
 __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
 {
@@ -43,8 +43,9 @@ __kernel void mcor_pair_request(
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
 /* Returns where the line from `from` leaves a cell along an axis, as a share of the line's length;
- * more than 1 if the line ends in the cell. low: the cell's lower side; 1 / gap: the line's extent
- * along the axis. */
+ * 2 if the line does not leave the cell along this axis (`ends`). low, edge: the cell's lower side
+ * and its length; step: the direction, 1 or -1; gap: 1 / the line's extent along the axis.
+ * Positions and lengths are in fixed-point units. */
 real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool ends)
 {
   const long side = step < 0 ? from - low : low + edge - from;
@@ -116,9 +117,10 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
 }
 
 /* Marks the cells between particle j and each of its partners: particles k of the tile that are on
- * the other side of the iso value, and closer than j's smoothing length. If they are also closer
- * than k's smoothing length, only the particle above the iso value marks the cells. Differences of
- * positions are exact, so the result does not depend on which particles share a tile. */
+ * the other side of the iso value, and closer to j than j's smoothing length. If the distance is
+ * less than k's smoothing length, too, only the particle above the iso value marks the cells.
+ * Differences of positions are exact, so the result does not depend on which particles share a
+ * tile. */
 void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int j, real iso, real h_scale, MCOR_MARK_PARAMS)
 {
@@ -143,8 +145,9 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
   }
 }
 
-/* Fits the query, with the reach of pairs, to the particles from `begin` on, until `end` or until x
- * descends, see mcor_query_particles. Returns the number of these particles. */
+/* Fits the query to the particles from `begin` on, until `end` or until x descends, see
+ * mcor_query_particles. The query's radius is the greatest distance of a pair. Returns the number
+ * of these particles. */
 int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
   real coarsest;
@@ -174,8 +177,8 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
     }
     for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
-      /* A particle below the iso value leaves all its pairs to its partners if no smoothing length
-       * is shorter than its own. */
+      /* A particle below the iso value leaves all its pairs to its partners if no particle of the
+       * tile has a shorter smoothing length. */
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {
@@ -185,10 +188,11 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
   }
 }
 
-/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. All
- * groups are tested together first, because most particles are far from the surface. Reads the
- * particles within the smoothing length of each particle. Marks the cells on the line between the
- * two particles of each pair, whose values have the iso value between them. */
+/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. Most
+ * particles are far from the surface, so one test is first made for all groups together: whether
+ * values around them are on both sides of the iso value. Reads the particles within the smoothing
+ * length of each particle. Marks the cells on the line between the two particles of each pair,
+ * whose values have the iso value between them. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

@@ -17,10 +17,11 @@ bool mcor_pair_lacks(
   return lacks;
 }
 
-/* One work-item = one brick with cells that are new to this round. Reads its nodes' masks. Grows
- * its set of reached cells through crossed faces of used cells: within the brick until nothing
- * changes, and one step beyond its sides. domain: cells whose nodes have right values. Sets
- * flags[0] if a cell beyond is new. */
+/* One work-item = one brick. If the brick has reached cells that are new since the last round,
+ * reads the masks of its nodes. Grows the brick's set of reached cells through crossed faces of
+ * used cells: within the brick until nothing changes, and one step into the neighbouring bricks.
+ * domain: cells whose nodes all have correct values. Sets flags[0] if a cell of a neighbouring
+ * brick is newly reached. */
 __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbours,
   __global const ulong* above, __global const ulong* valid, __global const int4* bricks,
   MCOR_BLOCK_PARAMS, __global const ulong* domain, __global ulong* grown, __global uint* reached,
@@ -76,10 +77,10 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   }
 }
 
-/* One work-item = one brick of a block. Adds the periodic images of its reached cells, by one
- * period along each axis, that are in the first period or at most `ring` cells outside of it.
- * first, period: in cells; a period of 0: not periodic along this axis. Sets flags[0] if a cell is
- * new. */
+/* One work-item = one brick of a block. Adds periodic images of the brick's reached cells, shifted
+ * by at most one period along each axis. Only images in the first period, or at most `ring` cells
+ * outside of it, are added. first, period: where the first period begins, and its length, in cells;
+ * a length of 0: not periodic along this axis. Sets flags[0] if an added cell is new. */
 __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_x,
   const int first_y, const int first_z, const int period_x, const int period_y, const int period_z,
   __global uint* reached, __global int* flags)
@@ -114,8 +115,8 @@ __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_
   }
 }
 
-/* One work-item = one brick. Writes to its slot its reached cells, and the cells that pairs
- * marked. */
+/* One work-item = one brick. Writes to the brick's slot the reached cells and the seeds, i.e. the
+ * cells that pairs marked. */
 __kernel void mcor_pair_fill(const int brick_count, __global const int4* bricks, MCOR_BLOCK_PARAMS,
   __global const ulong* reached, __global const ulong* marked, __global ulong* cells,
   __global ulong* seeds)

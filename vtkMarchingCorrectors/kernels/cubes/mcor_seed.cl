@@ -3,17 +3,18 @@
 
 /* Complete seeds [III-C]: finds the bricks whose nodes must be evaluated so that no crossed edge is
  * missed. Nodes are left out if their side of the iso value is certain without evaluation, or if
- * their weight is certainly too low: by whole blocks (32^3 nodes) or several of them, regions (8^3)
- * and bricks (4^3). A crossed edge has nodes on both sides. If both of its nodes are left out, two
- * neighbouring bricks are certain of different sides: both are evaluated after all
- * (mcor_seed_request). If one of its nodes is left out, an evaluated brick has a valid node on the
- * other side than its neighbour: the neighbour is evaluated, too (mcor_seed_grow). All bricks of
- * uncertain regions have slots while they are tested, so that the particles gathered for the bound
- * are also used for the nodes' values (mcor_seed_bricks). */
+ * their weight is certainly too low. Nodes are tested in cubes: whole blocks (32^3 nodes) or larger
+ * cubes, then regions (8^3), then bricks (4^3). A crossed edge has nodes on both sides of the iso
+ * value. If both of its nodes are left out, two neighbouring bricks are certain of different sides:
+ * mcor_seed_request has both bricks evaluated after all. If one of its nodes is left out, this
+ * node's brick is certain of another side than a valid node of an evaluated brick next to it:
+ * mcor_seed_grow has the certain brick evaluated, too. All bricks of uncertain regions have slots
+ * while they are tested, so that the particles gathered for the bound are also used for the nodes'
+ * values (mcor_seed_bricks). */
 
 #if !MCOR_OF_LATTICE
-/* Whether the range of the particles' values decides: a Shepard mean with weights >= 0 lies between
- * the least and the greatest value. */
+/* Whether the range of the particles' values can decide on which side of the iso value nodes are: a
+ * Shepard mean with weights >= 0 lies between the least and the greatest value. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == MCOR_SHEPARD && !MCOR_TENSOR)
 
 /* Parameters on which a node's side depends. side_margin: the greatest rounding error of a mean of
@@ -38,7 +39,8 @@ typedef struct
  * MCOR_SIDE_PARTICLES successive sorted particles, so most queries need not read particles. */
 
 #if MCOR_OF_FIELD
-/* One work-item = one run of particles. Writes the sides of its fluid particles. */
+/* One work-item = one run of MCOR_SIDE_PARTICLES particles. Writes on which sides of the iso value
+ * the run's fluid particles are. */
 __kernel void mcor_seed_side_flags(const int particle_count, __global const real* weight,
   __global const real* value, const real side_margin, const real iso, __global uchar* side_flags)
 {
@@ -55,8 +57,8 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 }
 #endif
 
-/* Returns, as a state, the sides of all particles that may reach a query's box, and maybe of a few
- * more particles. */
+/* Returns a state (MCOR_VOID to MCOR_EXAMINE): on which sides of the iso value the particles are
+ * that may reach a query's box. A few other particles may count, too. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
@@ -74,7 +76,8 @@ int mcor_query_side_flags(
   return seen;
 }
 
-/* Returns the sides of the tile's particles. */
+/* Returns a state (MCOR_VOID to MCOR_EXAMINE): on which sides of the iso value the tile's fluid
+ * particles are. */
 int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 {
   fixv above = 0, below = 0;
@@ -88,7 +91,8 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
 
-/* A coarse cube that more particles reach is divided, without computing a bound. */
+/* If more than this number of particles reach a coarse cube, the cube is divided without computing
+ * a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
 /* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
@@ -134,8 +138,8 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 
-/* Return the number of a region's first brick, and what to add to it for the number of brick b of
- * the region. */
+/* mcor_region_number returns the number of a region's first brick. The number of brick b (bits x,
+ * y, z) of the region is greater by mcor_region_offset(b). */
 int mcor_region_number(int region)
 {
   const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
@@ -146,7 +150,8 @@ int mcor_region_offset(int b)
   return (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
 }
 
-/* Returns the bricks of a region that are leaves, as bits; with one level, all bricks are. */
+/* Returns the bricks of a region that are leaves, as bits. With one level, all bricks are leaves.
+ * number: of the region's first brick. */
 uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 {
   uint found = 0;
@@ -158,11 +163,12 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 }
 
 /* One work-item = one of `count` regions from `first` on. Reads the particles that reach the
- * region, and the states of blocks. In a plane (depth 0) or with several levels, it first tries the
- * range of the particles' values. Writes the states of the region's bricks, or leaves, and requests
- * each uncertain one. Appends a region with uncertain bricks to the list, from entry `first` on, in
- * any order; list_count: the list's length for each level. With several levels, a region includes
- * the nodes on its far sides. Bricks above a plane are void. */
+ * region, and the states of blocks. In a plane (depth 0) or with several levels, first tests
+ * whether the range of the particles' values decides. Writes the states of the region's bricks
+ * (with several levels, of its leaves), and requests slots for uncertain bricks. Appends the region
+ * to the list if it has uncertain bricks. The entries of this call begin at `first`, and are in any
+ * order. list_count: how many entries each level has. With several levels, a region includes the
+ * nodes on its far sides. Bricks above a plane are void. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
@@ -308,8 +314,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
 #endif
 
 #if MCOR_OF_LATTICE
-/* Returns the block left of a brick's block, the block itself, and the block right of it; -1 for a
- * block that does not exist. */
+/* Returns the indices of three blocks: the block before a brick's block along x, the brick's block,
+ * and the block after it; -1 for a block that does not exist. */
 int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int4 brick)
 {
   const int4 block = mcor_block_of_brick(brick), step = (int4)(1, 0, 0, 0);

@@ -12,7 +12,8 @@
  * tunnels in plain cells; all other ambiguous faces follow the case table. Which faces the field
  * decides depends on the leaves alone, so cells on both sides agree. */
 
-/* Returns the side of the iso value on which the field is at a sample. */
+/* The sides of the iso value on which the field may be at a sample, i.e. a point where the field is
+ * evaluated. mcor_sample_side returns one of them. */
 #define MCOR_SAMPLE_BELOW 0
 #define MCOR_SAMPLE_ABOVE 1
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches the sample, see mcor_evaluate */
@@ -23,9 +24,9 @@ int mcor_sample_side(real value)
                               : MCOR_SAMPLE_BELOW;
 }
 
-/* One work-item = one brick. Reads used cells, node masks and, beside leaves of several levels,
- * which cells are plain. Writes the ambiguous faces between plain cells, at least one of them used,
- * and their number. */
+/* One work-item = one brick. Reads used cells, node masks and, with leaves of several levels, which
+ * cells are plain. Writes the ambiguous faces between two plain cells of which at least one is
+ * used, and the number of these faces. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
   const int leaf_count, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
@@ -66,7 +67,7 @@ real mcor_topology_value(
   return node_value[owner * 64L + ((x & 3) | (y & 3) << 2 | (z & 3) << 4)];
 }
 
-/* Returns part / whole, or 0.5 if `whole` is 0, as it may be on a device without denormal
+/* Returns part / whole, or 0.5 if `whole` is 0. It may be 0 on a device without denormal
  * numbers. */
 real mcor_topology_part(real part, real whole)
 {
@@ -108,8 +109,9 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
   }
 }
 
-/* One work-item = one brick. Reads the field at its faces' saddles. Keeps only the joined faces,
- * whose saddles are above the iso value, and writes their number. */
+/* One work-item = one brick. Reads the field at the saddles of the brick's ambiguous faces. A face
+ * is joined if its saddle is above the iso value. Keeps only the joined faces, and writes the
+ * number of these faces. */
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
   __global const real* value, __global ulong* decisions, __global int* joined_count)
 {
@@ -130,7 +132,8 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
 }
 
 /* One work-item = one brick. Reads used cells and joined faces. Writes the cells that may have a
- * tunnel, and the number of their samples, two for each cell. */
+ * tunnel, and the number of samples (points where the field will be evaluated): two for each such
+ * cell. */
 __kernel void mcor_topology_cells(const int brick_count, __global const int* neighbours,
   __global const ulong* used, __global const ulong* above, __global const int* cases,
   __global const mcor_cell_row* rows, __global ulong* decisions, __global int* counts)
@@ -247,8 +250,9 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
   }
 }
 
-/* One work-item = one brick. Reads the field at its cells' samples. Writes the cells whose samples
- * are both below, and the cells whose samples are both above. */
+/* One work-item = one brick. Reads the field at the two samples of each cell that may have a
+ * tunnel. Writes the cells whose samples are both below the iso value, and the cells whose samples
+ * are both above. */
 __kernel void mcor_topology_agree(const int brick_count, __global const int* base,
   __global const real* value, __global ulong* decisions)
 {

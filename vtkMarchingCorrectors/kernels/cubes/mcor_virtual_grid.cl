@@ -2,8 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where the surface may be. A
- * brick has a slot (values, masks) if it is needed. Blocks are sorted by key, bricks by block, then
- * z, y, x. A slot's number is a count of bits, so it depends on the set of bricks alone. */
+ * brick that is needed has a slot for the values and masks of its nodes. Blocks are sorted by key.
+ * Bricks are sorted by block, then by z, y, x. A slot's number is the number of needed bricks
+ * before its brick, so it depends on the set of bricks alone. */
 
 #define MCOR_BLOCK_PARAMS                                                                          \
   const int block_count, const int block_shift, __global const mcor_rung *rungs,                   \
@@ -12,11 +13,12 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Number of a brick among the 27 in and around a leaf, or of a part of a leaf; x, y, z are 0 to
- * 2. */
+/* Number of one of 27 bricks: a leaf (x = y = z = 1) and the bricks around it. Or number of one of
+ * a leaf's 27 parts: its inside (x = y = z = 1), faces, edges and corners. x, y, z are 0 to 2. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
-/* Whether a slot's state says the sides of its nodes, without their values. */
+/* Whether a brick's state tells on which side of the iso value all its nodes are, so that their
+ * values are not needed. */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
 /* A block or brick is an int4: x, y, z count blocks or bricks of its level, w is the level. */
@@ -36,7 +38,7 @@ bool mcor_has_block(__global const mcor_rung* rungs, int4 block)
     block.y < rung->n[1] && block.z < rung->n[2];
 }
 
-/* Returns the index of a block, or -1. */
+/* Returns the index of a block, or -1 if the block does not exist. */
 int mcor_find_block(MCOR_BLOCK_PARAMS, int4 block)
 {
   if (!mcor_has_block(rungs, block))
@@ -51,7 +53,7 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int4 block)
 
 #define MCOR_BLOCK_ARGS block_count, block_shift, rungs, block_keys, block_buckets
 
-/* Return the block of a brick, and the brick's number in it. */
+/* Return the block of a brick, and the brick's number in the block. */
 int4 mcor_block_of_brick(int4 brick)
 {
   return (int4)(brick.x >> 3, brick.y >> 3, brick.z >> 3, brick.w);
@@ -70,7 +72,7 @@ int mcor_brick_number(MCOR_BLOCK_PARAMS, int4 brick)
 }
 
 /* Returns the number of the brick that is one `step` (-1 to 1 along each axis) from `brick`, which
- * has number `own`. Mostly both are in one block. */
+ * has number `own`. Mostly both bricks are in one block, and no block is looked up. */
 MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int4 step)
 {
   const int4 to = (brick & 7) + step;
@@ -84,7 +86,7 @@ bool mcor_has_brick(__global const uint* bits, int number)
   return bits[number >> 5] >> (number & 31) & 1;
 }
 
-/* Returns the slot of the brick with this number, or -1. */
+/* Returns the slot of the brick with this number, or -1 if the brick has no slot. */
 int mcor_slot_of_number(__global const uint* brick_bits, __global const int* brick_base, int number)
 {
   if (number < 0)
@@ -95,7 +97,7 @@ int mcor_slot_of_number(__global const uint* brick_bits, __global const int* bri
   return bits & bit ? brick_base[number >> 5] + (int)popcount(bits & (bit - 1)) : -1;
 }
 
-/* Returns the slot of a brick, or -1. */
+/* Returns the slot of a brick, or -1 if the brick has no slot. */
 MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int4 brick)
 {
   return mcor_slot_of_number(brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, brick));

@@ -15,7 +15,7 @@
     return value;                                                                                  \
   }
 
-/* S: suffix of Clang's functions of T. */
+/* S: the suffix of the names of Clang's functions for type T. */
 #define MCOR_DEFINE_REAL(T, S)                                                                     \
   MCOR_FUNCTION(T, fabs, (T x), __builtin_fabs##S(x))                                              \
   MCOR_FUNCTION(T, sqrt, (T x), __builtin_sqrt##S(x))                                              \
@@ -27,7 +27,8 @@
 #define MCOR_DEFINE_SIGN(T)                                                                        \
   MCOR_FUNCTION(T, sign, (T x), x > 0 ? (T)1 : x < 0 ? (T)-1 : x == 0 ? x : (T)0)
 
-/* fmin and fmax return the other argument if one is NaN. B: T, or a scalar for all lanes of T. */
+/* fmin and fmax return the other argument if one is NaN. B: the type of the second argument: T, or
+ * a scalar type, whose value counts for all lanes of T. */
 #define MCOR_DEFINE_RANGE(T, B)                                                                    \
   MCOR_FUNCTION(T, fmin, (T a, B b), a < (T)b || (T)b != (T)b ? a : (T)b)                          \
   MCOR_FUNCTION(T, fmax, (T a, B b), a > (T)b || (T)b != (T)b ? a : (T)b)                          \
@@ -38,7 +39,7 @@
   MCOR_FUNCTION(T, max, (T a, B b), a > (T)b ? a : (T)b)                                           \
   MCOR_FUNCTION(T, clamp, (T x, B low, B high), min(max(x, low), high))
 
-/* L: suffix of Clang's functions of T; B: bits. */
+/* L: the suffix of the names of Clang's functions for type T; B: the number of bits of T. */
 #define MCOR_DEFINE_BITS(T, L, B)                                                                  \
   MCOR_DEFINE_INTEGER(T, T)                                                                        \
   MCOR_FUNCTION(T, popcount, (T x), __builtin_popcount##L(x))                                      \
@@ -68,8 +69,8 @@ MCOR_FUNCTION(double, convert_double, (long x), (double)x)
 MCOR_DEFINE_ATOMICS(int, min, max)
 MCOR_DEFINE_ATOMICS(uint, umin, umax)
 
-/* Functions of vectors R of n numbers T. Clang makes one instruction of such a loop, but makes
- * branches if the loop has a conditional. */
+/* Defines a function for vectors R of n numbers of type T, by a loop over the numbers. Clang makes
+ * one instruction of such a loop, but makes branches if the loop has a conditional. */
 #define MCOR_LANES_FUNCTION(n, R, name, parameters, value)                                         \
   MCOR_DEFINE R name parameters                                                                    \
   {                                                                                                \
@@ -113,7 +114,8 @@ MCOR_DEFINE_ATOMICS(uint, umin, umax)
     return r < 0;                                                                                  \
   }
 
-/* All functions of vectors R of n numbers T whose masks are vectors I of integers F. */
+/* Defines all functions for vectors R of n numbers of type T. The masks of these vectors are
+ * vectors I of n integers of type F. */
 #define MCOR_DEFINE_VECTOR(n, R, T, I, F)                                                          \
   MCOR_DEFINE_REALS(n, R, T)                                                                       \
   MCOR_DEFINE_INTEGER(I, F)                                                                        \

@@ -14,9 +14,9 @@
  * All lengths are in cubes of the virtual grid. A position is a fixed-point number, in units of
  * 2^-fix_bits cubes from the lattice origin, so that a difference of two positions is exact: a
  * node's value depends neither on the brick that evaluates it nor on its distance from the origin.
- * In a periodic box whose periods no cube divides, the edges along x, y, z differ. Then the length
- * "cube" is a little longer than the longest edge, and each edge is a whole number of fixed-point
- * units. Nodes, and offsets from them, are counted in edges. */
+ * If no cube fits into all periods of a periodic box a whole number of times, the edges along x, y,
+ * z differ. Then the length "cube" is a little longer than the longest edge, and each edge is a
+ * whole number of fixed-point units. Nodes, and offsets from them, are counted in edges. */
 
 /* Programs, see mcor_program.c. The lattice's program is compiled once for all SPH kernels and
  * fields, with and without solids: its only settings are MCOR_LANES and MCOR_DOUBLE. */
@@ -29,12 +29,13 @@
 #define MCOR_WEIGHT_SUM 2
 
 /* Every device must give the same bits. Additions, multiplications and fma are rounded alike
- * everywhere, so a compiler must not choose between them. (fma is slow on a device without an
- * instruction for it.) */
+ * everywhere. A compiler must not turn a multiplication and an addition into an fma. (fma is slow
+ * on a device without an instruction for it.) */
 #pragma OPENCL FP_CONTRACT OFF
 
-/* MCOR_ONE_COPY marks functions with several callers that are seldom called for a single particle.
- * Otherwise a compiler for CPUs copies them into each caller, which delays the first surface. */
+/* MCOR_ONE_COPY marks functions that have several callers, and are mostly called for many particles
+ * at once. Without the mark, a compiler for CPUs would copy such a function into each caller.
+ * Compiling would take longer, and the first surface would come later. */
 #if MCOR_LANES == 1
 #define MCOR_INLINE
 #define MCOR_ONE_COPY
@@ -131,11 +132,12 @@ real mcor_lane_sum(realv v)
 #define MCOR_CLUSTER MCOR_CLUSTER_OF(MCOR_LANES)
 #define MCOR_GROUPED_POINTS MCOR_GROUPED_POINTS_OF(MCOR_LANES)
 
-/* Least distance of a vertex from the ends of its edge, as a share of the edge. It keeps vertices
- * apart whose edges meet in a node at the iso value, so that no triangle loses its area. */
+/* Least distance of a vertex from the ends of its edge, as a share of the edge. If edges meet in a
+ * node whose value is the iso value, this distance keeps their vertices apart, so that no triangle
+ * loses its area. */
 #define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
 
-/* Masks of a brick's nodes or cells, see mcor_shared.h. */
+/* Masks of the nodes or cells in the lowest layer of a brick along x, y, z. */
 #define MCOR_LOW_X 0x1111111111111111UL
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL
@@ -170,8 +172,9 @@ int4 mcor_place_of(int n)
   return (int4)(n & 3, n >> 2 & 3, n >> 4, 0);
 }
 
-/* Return the step from a cell or brick: mcor_up to neighbour d up from it (bits x, y, z; 0 is the
- * brick itself), mcor_around to number d of the 27 around it. */
+/* mcor_up returns the step from a cell or brick to its neighbour d at higher coordinates (bits x,
+ * y, z; 0 is the cell or brick itself). mcor_around returns the step to number d of 27: the cell or
+ * brick itself (13), and all neighbours. */
 int4 mcor_up(int d)
 {
   return (int4)(d & 1, d >> 1 & 1, d >> 2, 0);
@@ -207,8 +210,8 @@ MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, u
 }
 
 /* Returns the cell of x along an axis. The cell is monotone in x, so the cells of two positions
- * enclose the cells of all positions between. Every period is divided alike, so sums, which follow
- * the order of the cells, are the same a period away. */
+ * enclose the cells of all positions between. All periods are divided into cells alike. Sums follow
+ * the order of the cells, so a sum is the same at a place one period away. */
 MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
 {
   const fix period = (fix)level->period[axis];

@@ -80,9 +80,9 @@ void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
   }
 }
 
-/* Finds the mean and the Gaussian curvature; in a plane, the line's curvature, and 0. Both are 0 if
- * the gradient vanishes. The field is scaled first, because a square of its gradient may underflow
- * or overflow. */
+/* Finds the mean and the Gaussian curvature. In a plane, *mean is the line's curvature, and *gauss
+ * is 0. Both curvatures are 0 if the gradient vanishes. The field is scaled first, because a square
+ * of its gradient may underflow or overflow. */
 void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
 {
   realv g[3], h[6];
@@ -115,7 +115,8 @@ void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
 }
 
 /* One work-item = one group of points. Writes the mean and the Gaussian curvature at each point;
- * the unit of length is a cube. iso: relative to A0 for the Shepard mean. */
+ * the unit of length is a cube. iso: the iso value; for a Shepard mean, less A0, the shift of the
+ * particles' values. */
 __kernel void mcor_curvature_points(MCOR_GROUP_PARAMS, __global const real4* offset,
   const real iso, const int plane, __global real* curvature)
 {

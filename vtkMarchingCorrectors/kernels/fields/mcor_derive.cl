@@ -67,7 +67,8 @@ void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const r
   }
 }
 
-/* Returns the particles' own values of an array. */
+/* Returns an array's values at the particles of the lanes, in fixed-point units; 0 in a lane that
+ * repeats another one. */
 fixv mcor_derive_own(
   const mcor_points* points, __global const int* order, __global const real* array)
 {

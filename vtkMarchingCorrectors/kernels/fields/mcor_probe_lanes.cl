@@ -210,8 +210,8 @@ void mcor_cluster_sums(const mcor_grid* grid, mcor_query* query, mcor_tile* tile
   (void)means;
 }
 
-/* One work-item = MCOR_CLUSTER groups of points. Writes their weight sums, and the sums of weight
- * times array over the particles. */
+/* One work-item = MCOR_CLUSTER groups of points. Writes for each point the weight sum, and for each
+ * array the sum of weight times value over the particles. */
 __kernel void mcor_probe_sums(
   MCOR_GROUP_PARAMS, __global const real4* offset, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {

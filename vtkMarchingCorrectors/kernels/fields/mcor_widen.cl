@@ -2,27 +2,30 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Widening: finds how much each particle's smoothing length may grow while the particle stays
- * inside the surface. core/fields/mcor_widen.c begins with the rule; here are its reasons.
+ * inside the surface. core/fields/mcor_widen.c begins with the rule; this comment gives the reasons
+ * for the rule.
  *
- * The taper falls to 0 where few neighbours are near, because lone drops and threads would shrink.
- * `least` is the iso value plus a margin, without which sheets would get holes. At the surface of
- * deep water, where all neighbours are on one side, the margin is 0, and a particle may even be
- * slightly outside, because each particle that has to be inside would raise a bump. At the rim of a
- * sheet, few neighbours are on one side. The margin is wider there: the neighbours' lengths may be
- * longer, and a thread that hangs there would break. A particle in the corner of a tank has as few
- * neighbours, but its neighbours are widened. With its own length it would stick out as a knob, so
- * its factor goes most of the way to the mean of theirs. A particle with more neighbours on one
- * side is at the surface of a drop, and keeps its length. */
+ * The taper, a number from 0 to 1, multiplies the growth of the length. It falls to 0 where few
+ * neighbours are near, because lone drops and threads would shrink. `least` is the weight sum that
+ * a particle needs: the iso value plus a margin. Without the margin, sheets would get holes. At the
+ * surface of deep water, there are many neighbours, all on one side. The margin is 0 there, and a
+ * particle may even be slightly outside, because each particle that has to be inside would raise a
+ * bump. At the rim of a sheet, there are few neighbours, all on one side. The margin is wider
+ * there: the neighbours' lengths may be longer, and a thread that hangs from the rim would break. A
+ * particle in the corner of a tank has as few neighbours as a particle at a rim, but its neighbours
+ * are widened. With its own length the particle would stick out as a knob, so its factor goes most
+ * of the way to the mean factor of its neighbours. A particle with more neighbours on one side is
+ * at the surface of a drop, and keeps its length. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
 /* At the surface of deep water, the weight sum may be this far below the iso value. */
 #define MCOR_WIDEN_OUTSIDE ((real)0.08f)
 
-/* At a rim, a margin grows by this share of itself. */
+/* At the rim of a sheet, the margin is wider by this share. */
 #define MCOR_WIDEN_RIM ((real)0.5f)
 
-/* Limits of the distance to the neighbours' middle, in smoothing lengths: below the first, water is
- * on both sides; beyond the second, on one side. */
+/* Limits of the distance from a particle to the middle of its neighbours, in smoothing lengths.
+ * Below the first limit, water is on both sides of the particle; beyond the second, on one side. */
 #define MCOR_SIDED_FROM ((real)0.4f)
 #define MCOR_SIDED_TO ((real)0.6f)
 
@@ -34,8 +37,8 @@ typedef struct
   int count, plane;
 } mcor_widen_at;
 
-/* One work-item = one sorted particle. Writes V_k norm, the weight without its powers of h_k; in
- * the plane V_k norm / h_k. */
+/* One work-item = one sorted particle. Writes the particle's V norm (volume times the kernel's
+ * norm), which is its weight times h^3. In a plane, writes V norm / h. */
 __kernel void mcor_widen_sizes(const int count, const int plane, __global const real* inv_h,
   __global const real* weight, __global real* size)
 {
@@ -75,13 +78,14 @@ int mcor_widen_place(
   return next;
 }
 
-/* Finds the offsets of particle k, in the unit of positions. */
+/* Offset of particle k from the particles j along an axis, in the unit of positions. */
 #define MCOR_WIDEN_OFFSET(axis, position) MCOR_CONVERT_REALV(grid->position[k] - at->x[axis])
 
-/* Most values of s that one walk over the particles treats. */
+/* Most factors s for which one walk over the particles makes the sums. */
 #define MCOR_WIDEN_LEVELS 3
 
-/* The crowd: sums over particles of n = max(0, 1 - (r / 2 h_j)^3), and of n times their offsets. */
+/* The crowd tells how many neighbours a particle j has, and where they are: sums over particles k
+ * of n = max(0, 1 - (r / 2 h_j)^3), and of n times the offset of k from j. r: the distance. */
 typedef struct
 {
   realv count, offset[3];
@@ -161,10 +165,10 @@ realv mcor_widen_ramp(realv x, real from, real to)
   return t * t * (3 - 2 * t);
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factor of
- * particles that are inside with the widest factor, or whose factor is 1 anyway. For the others,
- * writes 1 to `wanted`, and their taper in place of the factor. Writes to `least` the weight sum
- * that each particle needs. */
+/* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes to `least` the
+ * weight sum that each particle needs. Writes a particle's factor if the weight sum suffices with
+ * the widest factor, or if the taper (see the top of this file) is 0. For all other particles,
+ * writes 1 to `wanted`, and the taper in place of the factor. */
 __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, const real crowd_from, const real crowd_to, __global const real* sizes,
   __global real* factor, __global real* least, __global int* wanted)
@@ -177,7 +181,8 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
     { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv_h,
     grid.unit * inv_h, min(MCOR_LANES, particle_count - begin), plane
   };
-  /* Terms are not negative, so inside the fluid some of the particles suffice. */
+  /* Terms are not negative, so inside the fluid the nearest particles alone make the sum large
+   * enough. */
   const real reach = MCOR_TENSOR ? MCOR_SUPPORT * widest
                                  : fmax(MCOR_SUPPORT * widest * (real)0.54f, (real)2);
   mcor_crowd crowd = { 1, { 0, 0, 0 } };
@@ -267,8 +272,9 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
 }
 
-/* Whether all particles that may reach the query's box have the widest factor. Nearly all groups
- * are so deep inside the fluid that they do, and the mean is then the widest factor. */
+/* Whether all particles that may reach the query's box have the widest factor. This is so for
+ * nearly all groups, which are deep inside the fluid. Their mean factor is then the widest
+ * factor. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -286,10 +292,11 @@ bool mcor_widen_is_plain(
   return plain;
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads factors, and the least sums in `limited`.
- * Writes to `limited` the lower of each factor and the mean of factors at the particle. A factor of
- * 1 becomes 1 plus a share of mean - 1; the share is 0 outside of corners. The mean is the widest
- * factor less the mean of (widest - factor), so it is exact if all factors are the widest. */
+/* One work-item = MCOR_LANES sorted particles. Reads factors, and from `limited` the weight sum
+ * that each particle needs. Writes to `limited` the lower of the particle's factor and the mean
+ * factor at the particle. A factor of 1 becomes 1 + share (mean - 1); the share is above 0 only for
+ * a particle in a corner. The mean is the widest factor less the mean of (widest - factor), so it
+ * is exact if all factors are the widest. */
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real iso,
   const real margin, __global const real* factor, __global real* limited)
 {

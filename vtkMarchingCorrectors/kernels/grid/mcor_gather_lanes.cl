@@ -190,7 +190,8 @@ void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile*
   mcor_tile_pad(tile);
 }
 
-/* The particles of a tile, as each lane sees them. */
+/* A reach: the particles of a tile, stored such that each lane reads the particles for its own
+ * point. */
 #if MCOR_PARTS == 1
 typedef struct
 {
@@ -211,7 +212,8 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 #else
 #define MCOR_REACH_SIZE (MCOR_PARTS * (MCOR_TILE_SIZE + 16))
 
-/* Which particles of a tile reach each part: one mask for MCOR_LANES particles. */
+/* Which particles of a tile reach each part of a group. One mask stands for MCOR_LANES successive
+ * particles. */
 typedef struct
 {
   mcor_mask mask[MCOR_PARTS][MCOR_TILE_SIZE / MCOR_LANES + 1];

@@ -175,8 +175,9 @@ int mcor_grid_insert(
   return most;
 }
 
-/* Returns the end of the whole cells from `first` on that begin before `end` and together fit into
- * an insertion sort; `first` if the first cell is too large. */
+/* Finds the cells from particle `first` on that begin before `end`, as many as fit into one
+ * insertion sort. Returns the index behind the last particle of these cells; `first` if the first
+ * cell is too large. */
 int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int count)
 {
   const int limit = min(first + MCOR_INSERTION_LIMIT, count);
@@ -231,7 +232,8 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
   }
 }
 
-/* One work-item = one particle. Turns its volume into its weights. norm: the SPH kernel's norm. */
+/* One work-item = one particle. Turns the particle's volume, in trim_weight (below 0 for solids),
+ * into the weights V norm / (scaled h)^3. norm: the SPH kernel's norm. */
 __kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
   __global real* weight, __global real* trim_weight)
 {
@@ -307,8 +309,8 @@ typedef struct
   side[1] = MCOR_FMA(pull, along[1], side[1]);                                                     \
   side[2] = MCOR_FMA(pull, along[2], side[2]);
 
-/* Adds particle k to the sums of particles at x. scale: 1 / h_j, in the unit of positions. inside:
- * the lanes that the tile was gathered for. */
+/* Adds particle k to the sums of the particles j, at x. scale: 1 / h_j, in the unit of positions.
+ * inside: the lanes for whose particles the tile was gathered. */
 void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, const fixv x[3],
   realv scale, realv inv_h, fixv inside, int plane, mcor_density_sums* sums)
 {
@@ -337,8 +339,8 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 
 /* Returns the factor that makes up for a side without neighbours in the density of a particle: 1 +
  * 5/3 D^2 with D^2 = variance |g|^2 / n^2, where g and n are the sums `fluid` and `size`.
- * one_sided: 5/3 variance. Solids may fill the empty side, but not overfill it: g gets the share of
- * the sum `solids`, from 0 to 1, that makes |g| least. */
+ * one_sided: 5/3 variance. Solids may fill the empty side, but not overfill it. So the share of the
+ * sum `solids`, from 0 to 1, that makes |g| least is added to g. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;
@@ -409,9 +411,10 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int 
 #define MCOR_LEAST_DENSITY ((real)0.01f)
 
 /* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled
- * h)^3. As V = m / (sum m W), norm and unscaled h^3 cancel. Writes to `without` the first particle
- * whose density is too low. Does not report particles whose support stays clear of the box (low,
- * high; in cubes) in which the field is evaluated: they may lack neighbours. */
+ * h)^3. As V = m / (sum m W), norm and unscaled h^3 cancel. Writes to `without` the lowest input
+ * number of a particle whose density is too low. Particles whose support stays clear of the box in
+ * which the field is evaluated (low, high; in cubes) are not reported, because they may lack
+ * neighbours. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const real* density, const real unit, __global const fix* px, __global const fix* py,
   __global const fix* pz, __global const real* inv_h, const real low_x, const real low_y,

@@ -4,11 +4,11 @@
 /* Points that are evaluated together, in groups of up to MCOR_LANES, and the particles that reach
  * them.
  *
- * Many more particles reach some point of a group than reach one given point. If packing is cheap,
- * a group therefore consists of MCOR_PARTS parts. The points of a part are close together, and each
- * part has its own list of particles. All lists are read at the same time: lane l of a vector
- * belongs to part l % MCOR_PARTS. Every sum adds its particles in the order of the search grid,
- * whatever the groups are. */
+ * Many more particles reach some point of a group than reach one given point. So a group consists
+ * of MCOR_PARTS parts if packing, i.e. copying the chosen particles next to each other, is cheap.
+ * The points of a part are close together, and each part has its own list of particles. All lists
+ * are read at the same time: lane l of a vector belongs to part l % MCOR_PARTS. Every sum adds its
+ * particles in the order of the search grid, whatever the groups are. */
 
 /* Greatest distance between nodes of a group, in cubes, summed over the three axes; MCOR_GROUP_EDGE
  * is the limit along each axis. */
@@ -17,7 +17,8 @@
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
 #if !MCOR_OF_LATTICE
-/* Points, each given by a lattice node and an offset from it. */
+/* Points. x, y, z: each point's lattice node, in fixed-point units; ox, oy, oz: the offset from the
+ * node, in cubes. */
 typedef struct
 {
   int index[MCOR_LANES]; /* number of each lane's point; -1 if a lane repeats another one */
@@ -87,8 +88,8 @@ __kernel void mcor_group_count(
 }
 
 #else
-/* Gives the points of a group to lanes, and loads their nodes. from: the point of each lane, also
- * of lanes that repeat another one. */
+/* Gives the points of a group to lanes, and loads their nodes. from: the number of each lane's
+ * point. A lane without a point of its own repeats the point of another lane. */
 void mcor_points_load(const mcor_grid* grid, __global const int4* node, int begin, int end,
   mcor_points* points, int from[MCOR_LANES])
 {

@@ -82,8 +82,8 @@ typedef struct
   int begin, end;     /* remaining particles of the current row */
 } mcor_query;
 
-/* Limits a distance to the lattice's extent, so that a position less or plus the distance cannot
- * overflow. */
+/* Returns a distance in fixed-point units, at most the lattice's extent, so that a position minus
+ * the distance cannot overflow. */
 fix mcor_query_reach(float distance)
 {
   const fix most = (fix)1 << (MCOR_DOUBLE ? 62 : 30);
@@ -139,7 +139,8 @@ bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int next)
   return false;
 }
 
-/* Sets the origin of a query whose `low` and `high` are set, and makes `box` of them. */
+/* Sets the origin of a query, and makes `box` from the query's `low` and `high`, which are set
+ * already. */
 void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin[3])
 {
   for (int a = 0; a < 3; ++a)
@@ -193,8 +194,8 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Skips empty rows: moves to the row before the level's next row with particles. If the next row is
- * in another plane, moves to the end of the plane before that plane. */
+/* Skips empty rows: moves to the row before the level's next row with particles. If the next row
+ * has another z, moves to the last row of the z before. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;

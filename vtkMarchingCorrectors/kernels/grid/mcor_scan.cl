@@ -152,8 +152,8 @@ __kernel void mcor_unique_count(__global const ulong* keys, const int count, __g
   flags[i] = i == 0 || keys[i] != keys[i - 1];
 }
 
-/* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
- * to index_of[values[i]], for key i, the index of its distinct key. */
+/* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once.
+ * Writes to index_of[values[i]] the index of key i among the distinct keys. */
 __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* values,
   const int count, __global const int* scanned, __global ulong* distinct, __global int* index_of)
 {

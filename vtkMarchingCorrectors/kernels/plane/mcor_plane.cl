@@ -6,8 +6,8 @@
  * cells and nodes works for squares, too.
  *
  * A square's side is halved if a finer square touches it, so a square is a polygon of 4 to 8 nodes.
- * Each crossed side or half has one vertex, which the squares on both sides share. In each of these
- * squares, one line begins or ends at the vertex. */
+ * Each crossed side, or crossed half of a side, has one vertex. The two squares that meet there
+ * share the vertex. In each of the two squares, one line begins or ends at the vertex. */
 
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL
@@ -50,7 +50,8 @@ mcor_plane_ring mcor_plane_ring_of(uint split)
   return ring;
 }
 
-/* Return whether side i goes from above to below, and whether it is crossed. */
+/* mcor_plane_falls returns whether side i goes from a node above the iso value to a node below.
+ * mcor_plane_crosses returns whether one node of side i is above, and the other below. */
 bool mcor_plane_falls(const mcor_plane_ring* ring, uint above, int i)
 {
   return (above >> ring->node[i] & 1) && !(above >> ring->node[(i + 1) % ring->count] & 1);
@@ -66,8 +67,9 @@ int mcor_plane_side(const mcor_plane_ring* ring, int i)
   return mcor_adaptive_slot(ring->node[i], ring->node[(i + 1) % ring->count]);
 }
 
-/* Marks the sides that a square beside finer squares uses. A side that the squares on both sides
- * use gets all quadrants, as in space. Returns the number of the square's lines. */
+/* Marks the sides on which a square beside finer squares has vertices. A square marks two of the
+ * four quadrants around a side. The square across the side marks the other two. Returns the number
+ * of the square's lines. */
 int mcor_plane_mark(
   const mcor_leaf* leaf, int cell, mcor_adaptive_nodes_of nodes, __global uint* quadrants)
 {
@@ -89,8 +91,8 @@ int mcor_plane_mark(
   return lines;
 }
 
-/* Returns the vertex of the edge along an axis from node (x, y) of a brick; x and y may be 4, in
- * the next brick. upper: slots of the brick's upper neighbours. */
+/* Returns the vertex of the edge along an axis from node (x, y) of a brick. If x or y is 4, the
+ * node is in the next brick. upper: slots of the brick's upper neighbours. */
 int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int x, int y, int axis)
 {
@@ -100,11 +102,11 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   return vertex_base[owner] + mcor_edge_rank(e, n) + (axis == 1 && (e[0] >> n & 1) ? 1 : 0);
 }
 
-/* Writes the lines of a square as triangles whose last two corners are the same, and returns their
- * number. Nodes above the iso value are on the left of a line. The square's border runs around it
- * with the square on the left. A line begins where the border goes from above to below. It ends at
- * the border's previous crossing, or, if the nodes above are joined, at the next crossing. leaf:
- * the square's leaf; not read for a plain square. upper: see mcor_plane_vertex. */
+/* Writes the lines of a square as triangles whose last two corners are the same. Returns the number
+ * of lines. Nodes above the iso value are on the left of a line. The square is on the left of its
+ * border. A line begins where the border goes from above to below. It ends at the border's previous
+ * crossing, or, if the nodes above are joined, at the next crossing. leaf: the square's leaf; not
+ * read for a plain square. upper: see mcor_plane_vertex. */
 MCOR_ONE_COPY int mcor_plane_emit(const ulong* corners, bool is_plain, const mcor_leaf* leaf,
   int cell, bool joined, __global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, __global int* to)

@@ -10,8 +10,8 @@
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 
 /* One work-item = MCOR_LANES nodes of one of the `count` bricks from slot `first` on. If the nodes
- * are needed, writes their values and weights, also to the same nodes one layer up in z, see
- * mcor_plane_spread. */
+ * are needed, writes their values and weights. The nodes one layer up in z get the same values and
+ * weights, see mcor_plane_spread. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)

@@ -6,8 +6,9 @@
 /* A mean needs a sum of weights above this; a lower sum has no exact digits. */
 #define MCOR_LEAST_SUM ((real)1e-30f)
 
-/* At most MCOR_ATTRIBUTE_LIMIT sorted arrays, `stride` elements long, one after the other. Their
- * means at a point are stored one after the other, too. */
+/* At most MCOR_ATTRIBUTE_LIMIT arrays in the order of the sorted particles, each `stride` elements
+ * long, one after the other. The means of all arrays at a point are stored one after the other,
+ * too. */
 #define MCOR_ATTRIBUTE_PARAMS                                                                      \
   const int attribute_count, const int stride, __global const real *attributes, __global real *means
 

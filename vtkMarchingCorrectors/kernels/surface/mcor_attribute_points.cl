@@ -11,10 +11,10 @@ __kernel void mcor_attribute_means(
   mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* Updates each point's nearest fluid particle: with radius < 0 from the particles that reach the
- * point, else from all particles within the query's radius, and maybe from some beyond it. A
- * particle that does not reach the point may be so far from the query's origin that its position in
- * a tile is not exact, so differences are taken between fixed-point numbers. */
+/* Updates each point's nearest fluid particle. If the query's radius is below 0, only particles
+ * that reach the point count. Else all particles within the radius count, and maybe a few beyond
+ * the radius. A particle that does not reach the point may be so far from the query's origin that
+ * its position in a tile is not exact, so differences are taken between fixed-point numbers. */
 MCOR_ONE_COPY void mcor_attribute_nearer(
   const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {
@@ -41,11 +41,11 @@ MCOR_ONE_COPY void mcor_attribute_nearer(
   }
 }
 
-/* One work-item = one group of points. Writes the number of each point's nearest fluid particle; -1
- * if none is found. First looks among the particles that reach the points. If smoothing lengths
- * differ, a particle that does not reach a point may be nearer. With a very low iso value of the
- * weight, it may be that no particle reaches a point, but one reaches an end of its lattice
- * edge. */
+/* One work-item = one group of points. Writes the number of the fluid particle nearest to each
+ * point; -1 if none is found. First looks among the particles that reach the point. Looks farther
+ * if smoothing lengths differ, because a particle that does not reach the point may be nearer. Also
+ * looks farther if no particle reaches the point: with a very low iso value of the weight, a
+ * particle may reach only an end of the point's lattice edge. */
 __kernel void mcor_attribute_nearest(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)
 {

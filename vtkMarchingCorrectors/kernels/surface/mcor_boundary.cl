@@ -11,7 +11,7 @@
  *
  *   M(x) = sum V (x_j - x) (outer product) grad W(x - x_j)
  *
- * It is about the identity where particles surround x, and singular where they do not. */
+ * M is about the identity where particles surround x, and singular where they do not. */
 
 /* A symmetric matrix. */
 typedef struct

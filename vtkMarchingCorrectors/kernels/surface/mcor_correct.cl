@@ -47,19 +47,22 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
   return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);
 }
 
-/* Required accuracy along the edge. A small residual alone is not enough: with a small gradient, it
- * also occurs far from the surface. */
+/* Greatest error of a vertex's position along its edge, as a share of the edge. A small difference
+ * from the iso value alone is not enough: where the gradient is small, the vertex may still be far
+ * from the surface. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
-/* Limits MCOR_EDGE_ERROR: the rounding error of a sum, relative to the iso value. It is 0 for a
- * Shepard mean, because the sum of its terms, relative to the iso value, is 0 at the surface. */
+/* The rounding error of a sum, relative to the iso value. MCOR_EDGE_ERROR never requires a smaller
+ * difference from the iso value. The rounding error is 0 for a Shepard mean, because the sum of its
+ * terms, relative to the iso value, is 0 at the surface. */
 #define MCOR_SUM_ROUNDING (MCOR_FIELD == MCOR_SHEPARD ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
 /* A bracket of this length is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
-/* Edges or lines: vectors a from end to end, and values v less iso at both ends. A line has a
- * start, relative to the node, and the slope at the start; it has no v1. */
+/* Edges or lines. (ax, ay, az): the vector from end to end, in cubes; v0, v1: the values at the
+ * ends, less the iso value. Only a line has a start (x, y, z), relative to its node, and the
+ * field's slope at the start. A line has no v1. */
 typedef struct
 {
   bool lines;
@@ -67,13 +70,13 @@ typedef struct
   realv x, y, z, slope;
 } mcor_edges;
 
-/* Most vertices are this close to their linear interpolation, in cubes. */
+/* Most vertices are this close to their linear interpolation, as a share of the edge. */
 #define MCOR_EDGE_SLACK ((real)0.15f)
 
 /* Most vertices move no further than this on a line, in cubes. */
 #define MCOR_LINE_SLACK ((real)0.3f)
 
-/* Loads group number `group` of edges: their lower nodes and their ends. */
+/* Loads group number `group` of edges: the lower nodes, and the values at both ends. */
 MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int group,
   __global const int4* vertex_edge, __global const real* vertex_ends, mcor_edges* edges,
   mcor_points* points)
@@ -147,7 +150,8 @@ realv mcor_correct_near(realv slope, real iso)
 }
 
 /* Moves all vertices of a group along their edges, from t0, until each is on the surface or has
- * made `limit` steps. evaluations: the number of evaluations of each vertex. */
+ * made `limit` steps. t0, t: where a vertex starts and where it ends, as shares of the edge.
+ * evaluations: the number of evaluations of each vertex. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
   real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
   mcor_field_at* at, realv* t, fixv* evaluations)
@@ -180,9 +184,10 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       return;
     }
-    /* side: has the sign of the sum of terms relative to the iso value. This sum passes 0 between
-     * nodes of a positive weight. It has another sign than `value` only where a kernel with
-     * negative lobes makes the weight negative, beyond a pole of the mean. */
+    /* `side` has the sign of the mean's numerator, less the iso value times the weight. This number
+     * passes 0 between two nodes of positive weight on different sides of the iso value. Its sign
+     * differs from the sign of `value` only where a kernel with negative lobes makes the weight
+     * negative, beyond a pole of the mean. */
     const realv side =
       MCOR_FIELD == MCOR_SHEPARD && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;
@@ -210,11 +215,11 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
-/* One work-item = one group of vertices. Reads edges and the values less iso at their ends, or,
- * with `lines`, starts (offset). Writes the vertices' offsets; to `linear`, the linear position
- * along the edge less the final position, as a share of the edge; value, gradient and trimming
- * weight; number of evaluations; attributes. On lines, `linear` becomes 1 if the surface is not
- * reached. limit 0: no correction (preview). */
+/* One work-item = one group of vertices. Reads edges, and the values at their ends less the iso
+ * value. With `lines`, reads the starts of lines from `offset` instead. Writes each vertex's
+ * offset, value, gradient, trimming weight, number of evaluations and attributes. Writes to
+ * `linear` the linear position along the edge less the final position, as a share of the edge; on a
+ * line, 1 if the surface is not reached. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,

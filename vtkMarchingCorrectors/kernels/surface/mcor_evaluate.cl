@@ -15,7 +15,7 @@ typedef struct
   mcor_quantity field, weight, fluid;
 } mcor_field_at;
 
-/* Adds to a sum m times a kernel's value k, and m times its gradient slope * along. */
+/* Adds m times a kernel to a sum. The kernel's value is k, its gradient is slope * along. */
 void mcor_quantity_add(realv m, realv k, realv slope, const realv along[3], mcor_quantity* sum)
 {
   const realv ms = m * slope;
@@ -25,7 +25,8 @@ void mcor_quantity_add(realv m, realv k, realv slope, const realv along[3], mcor
   sum->gradient[2] = MCOR_FMA(ms, along[2], sum->gradient[2]);
 }
 
-/* Evaluates the field at all points. iso: relative to A0 for the Shepard mean. */
+/* Finds the field minus the iso value, and the weights, at all points. iso: the iso value; for a
+ * Shepard mean, less A0, the shift of the particles' values. */
 void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, real iso, mcor_field_at* at)
 {

@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight passes the vertex
- * threshold. "Weight" here also means the boundary eigenvalue or the margin. A cut vertex belongs
- * to a mesh edge, whose key is (lower vertex << 32 | higher vertex); the two triangles at this edge
- * share the vertex. */
+ * threshold. "Weight" here also means the boundary eigenvalue or the number that mcor_trim_margin
+ * makes. A cut vertex belongs to a mesh edge, whose key is (lower vertex << 32 | higher vertex);
+ * the two triangles at this edge share the vertex. */
 
 /* Returns which corners are above the threshold, bits 0 to 2. A corner at the threshold is outside
  * for every triangle around it, so that the trimmed surface is a manifold there, too, and nothing
@@ -20,7 +20,7 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
 }
 
 /* One work-item = one batch of triangles. Writes how many triangles remain of the batch, and how
- * many cuts the edges of its triangles have. */
+ * many cut edges its triangles have: two for each cut triangle. */
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {
@@ -49,9 +49,9 @@ ulong mcor_trim_key(int a, int b)
   return (ulong)min(a, b) << 32 | (uint)max(a, b);
 }
 
-/* One work-item = one batch of triangles. Writes the keys of their cut edges. A cut triangle has two,
- * which begin at the corner that is alone on its side of the threshold: first the edge to the next
- * corner, then the edge to the corner after that. */
+/* One work-item = one batch of triangles. Writes the keys of their cut edges. A cut triangle has
+ * two cut edges, which begin at the corner that is alone on its side of the threshold: first the
+ * edge to the next corner, then the edge to the corner after that. */
 __kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global const int* cuts, __global ulong* keys)
 {
@@ -71,8 +71,9 @@ __kernel void mcor_trim_edges(const int triangle_count, __global const int* tria
   }
 }
 
-/* Writes the rest of a cut triangle [Fig. 3 c, d, e]; a quad is split. cut_next, cut_last: the
- * vertices of its cut edges. Returns where the next triangle goes. */
+/* Writes what remains of a cut triangle [Fig. 3 c, d, e]: one triangle, or a quad that is split
+ * into two. cut_next, cut_last: the vertices on the triangle's two cut edges, in the order of
+ * mcor_trim_edges. Returns where the next triangle goes. */
 __global int* mcor_trim_cut(
   __global const int* t, int inside, int cut_next, int cut_last, __global int* to)
 {

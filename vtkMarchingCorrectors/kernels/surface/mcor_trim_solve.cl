@@ -14,11 +14,11 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
   return MCOR_SOLIDS ? gradient[v].w : weight[v];
 }
 
-/* One work-item = one vertex. Writes the quantity by which the vertex is trimmed. With a
- * fluid_share of 0 (or less), this is `quantity`, and the limit is `threshold`. Else it is the
- * smaller of quantity - threshold and the excess of the fluid's weight over its share of the weight
- * (for the weight sum, this excess alone), and the limit is 0. A vertex without a mean gets at most
- * the limit, and so is outside. */
+/* One work-item = one vertex. Writes the number by which the vertex is trimmed. If fluid_share is
+ * not above 0, this number is `quantity`, and its limit is `threshold`. Else the limit is 0, and
+ * the number is the smaller of two excesses: quantity - threshold, and the fluid's weight -
+ * fluid_share times the weight. For the weight sum, only the second excess counts. A vertex without
+ * a mean gets at most the limit, and so is outside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -35,19 +35,20 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   margin[i] = m;
 }
 
-/* Returns where on an edge a linear quantity, wa and wb at the ends, equals w; but not too close to
- * the ends. */
+/* A quantity is linear along an edge: wa at one end, wb at the other. Returns where the quantity
+ * equals w, as a share of the edge, at least MCOR_EDGE_MARGIN away from both ends. */
 real mcor_trim_fraction(real wa, real wb, real w)
 {
   return clamp((w - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
 }
 
-/* One work-item = one cut vertex. Writes its position, as the nearer end's node and an offset:
- * where the weight, taken as linear along the mesh edge, equals the threshold, or where the fluid's
- * weight equals the least for a mean, whichever is nearer to the end inside. The position stays
- * away from the ends, because cut vertices of several edges would meet at an end. Its bits do not
- * depend on the order of vertices. In place of the gradient, writes the vector to the end inside,
- * and whether the fluid's weight decided. */
+/* One work-item = one cut vertex. Writes the vertex's position, as the nearer end's node and an
+ * offset. The weights are taken as linear along the mesh edge. The position is where the weight
+ * equals the threshold, or where the fluid's own weight is the least that a mean needs, if this is
+ * nearer to the end inside. The position stays away from the ends, because cut vertices of several
+ * edges would meet at an end. The position's bits do not depend on the order of vertices. In place
+ * of the gradient, writes the vector to the end inside, and as fourth number whether the fluid's
+ * weight decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
@@ -86,7 +87,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 #define MCOR_TRIM_STEP ((real)0.25)
 
 /* Most steps back to where the Shepard mean exists. Each step goes half of the remaining way to the
- * edge's end, where cuts would meet. */
+ * edge's end. No step goes to the end itself, where cuts of several edges would meet. */
 #define MCOR_TRIM_RETREATS 12
 
 /* Greatest |w - threshold| of a cut vertex. */
@@ -114,8 +115,9 @@ void mcor_quantity_choose(fixv lanes, const mcor_quantity* other, mcor_quantity*
   }
 }
 
-/* Finds how far the points of the last evaluation are inside the nearest limit. For a weight sum,
- * the fluid's share is the only limit if it is above 0. */
+/* Finds by how much the points of the last evaluation exceed the limit that they exceed least, and
+ * the gradient of this excess. For a weight sum with a fluid_share above 0, the fluid's share is
+ * the only limit. */
 void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
   mcor_quantity* bound)
@@ -192,8 +194,8 @@ fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
   return tangent;
 }
 
-/* Moves points that have no Shepard mean at their linear cut towards the edge's end inside, until
- * they have one. Returns which points were moved. */
+/* Some points have no Shepard mean at their linear cut. Moves these points towards the end of the
+ * edge that is inside, until they have a mean. Returns which points were moved. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
   fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -296,8 +298,8 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
 
 /* One work-item = one group of cut vertices at their linear cuts. Moves them to where field = iso
  * and weight = threshold. Writes position, value, gradient, weight and attributes. Writes the flag
- * 1, or 2 if the search fails, because the two surfaces are tangent or too far away, or the
- * boundary eigenvalue has no gradient. */
+ * 1, or 2 if the search fails: the surfaces field = iso and weight = threshold are tangent or too
+ * far away, or the boundary eigenvalue has no gradient. */
 __kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tolerance,
   const real threshold, const real fluid_share, const int by_eigenvalue, const int steps,
   const int plane, __global real4* offset, __global real* value, __global real4* gradient,

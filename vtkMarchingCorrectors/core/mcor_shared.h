@@ -68,9 +68,9 @@ typedef struct mcor_level
 /* One launch reads the values of up to this number of arrays, see mcor_values_load. */
 #define MCOR_ARRAY_STEP 4
 
-/* One flag tells the sides of the iso value for this number of successive particles, see
- * mcor_seed_side_flags. One work-item finds the pairs of PAIR_VECTORS vectors of particles; few,
- * because each particle may have many pairs. */
+/* SIDE_PARTICLES: one flag tells on which sides of the iso value so many successive particles are,
+ * see mcor_seed_side_flags. PAIR_VECTORS: one work-item finds the pairs of particles in so many
+ * vectors. There are few, because a particle may have many pairs. */
 #define MCOR_SIDE_PARTICLES 16
 #define MCOR_PAIR_VECTORS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 

@@ -86,9 +86,9 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
 }
 
-/* Fails unless each edge has two triangles, or one and lies on the border; all triangles have the same orientation;
- * lines of the lowest iso value are on the border, and each other line lies between the band above its value and the
- * band below it; and no other edge separates bands. */
+/* Checks a filled region. Each edge inside has two triangles, and each edge on the border has one. All triangles have
+ * the same orientation. Lines of the lowest iso value are on the border; each other line lies between the band above
+ * its value and the band below it. No other edge separates two bands. */
 static fill_report fill_check(const plane_field* field, const mcor_surface* s)
 {
   fill_report report = { 0 };

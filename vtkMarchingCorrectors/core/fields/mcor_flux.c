@@ -344,8 +344,8 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
 
 /* ---- the call ---- */
 
-/* Sets, from the ranges of velocity and density, the least speed and density for the accuracy of
- * pieces, and the unit of each sum, which is a whole number of units. */
+/* Reads the ranges of velocity and density. Sets the lowest speed and density that the accuracy of a
+ * piece is relative to, and the unit of which each sum is a whole number. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
   mcor_context* context = job->base.context;

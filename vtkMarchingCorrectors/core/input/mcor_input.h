@@ -137,8 +137,8 @@ mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
-/* Finds the least and greatest value of one component, skipping marked particles unless `solid` is
- * NULL. If no particle is left, the range is DBL_MAX, -DBL_MAX. */
+/* Finds the least and greatest value of one component. skip: which of the particles that `solid`
+ * marks are left out; none is if `solid` is NULL. Without particles the range is DBL_MAX, -DBL_MAX. */
 void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, int component, double range[2]);
 /* Returns the largest absolute value in a range; 0 if the range is empty. */
@@ -151,8 +151,8 @@ static inline double mcor_largest_of(double low, double high)
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
-/* mcor_far.c. Marks far particles as absent, in far->solid, so that the lattice, which was too long
- * before, fits. If too many would be absent, fails with the sentence about the lattice. */
+/* mcor_far.c. Serves a call whose lattice is too long: marks far particles as absent, in far->solid,
+ * so that a shorter lattice holds the others. Fails as before if too many would be absent. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {

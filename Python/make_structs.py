@@ -88,7 +88,8 @@ class Header:
         return shapes
 
     def parameter_type(self, text):
-        """Returns the type as ctype() does. A text that the caller must free, or a handle, is a c_void_p."""
+        """Returns the type of a parameter or of a result, as ctype() writes it. A text that the caller must free, or a
+        handle, is a c_void_p."""
         base, stars = re.match(r"(?:const )?(\w+)((?: \*)*)", text).groups()
         pointers = stars.count("*") + ("[" in text)
         if (base, pointers) == ("void", 0):
@@ -113,7 +114,7 @@ class Header:
 
 
 class Rows:
-    """The core's lists of statistics and of options.
+    """The core's lists of statistics and of options. Their columns are explained in mcor_statistics.def and mcor_options.def.
 
     statistics: a list of (how, when, member, name). options: {member: ({word: number}, scope, property)}. types: {member:
     its type in Python}.

@@ -14,8 +14,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
-# The package's folder. ParaView may load a link to this file, which lies in another folder, without the panel's XML: then
-# the link is followed. The links in a build's folder are not followed.
+# The package's folder. ParaView may load a link to this file. If the link's folder lacks the panel's XML, the link is
+# followed. A build's folder also holds links, but has the XML, so they are not followed.
 FOLDER = Path(__file__).absolute().parent
 if not (FOLDER / "MarchingCorrectors.xml").exists():
     FOLDER = Path(__file__).resolve().parent
@@ -64,7 +64,8 @@ def read_properties():
         name = each.get("command", "")[len("Set"):]
         if each.get("number_of_elements") != "1" or each.get("information_only") or name in OTHERS:
             continue
-        # Ranges of real numbers are only for sliders; the core refuses illegal values.
+        # Ranges of real numbers in the XML are only for the panel's sliders, so they set no limits here. The core refuses
+        # illegal values.
         limits = [int(entry.get("value")) for entry in each.findall("EnumerationDomain/Entry")]
         for domain in each.findall("IntRangeDomain"):
             limits = int(domain.get("min", -BIG)), int(domain.get("max", BIG))
@@ -75,14 +76,15 @@ def read_properties():
 
 PROPERTIES = read_properties()
 SIDES = {"Box": (0.0, 1.0) * 3, "PeriodicBounds": (0.0,) * 6, "Within": (0.0,) * 6}
-# The words for the numbers of properties, in order. A word is in a method's name, such as SetSeedModeToPairs(), and in a constant's.
+# For each of these properties, the words for its values 0, 1, ... A word is part of a method's name, such as
+# SetSeedModeToPairs(), and of a constant's name.
 WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
          "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
 # What the panel shows of a run, before the run has found anything.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
-# The filter keeps of its last run: a mark of the particles and a mark of the scalar, which tell whether the data on the device can be used
-# again; the options that the factors of smoothing lengths depend on; and these factors. NO_RUN stands for no last run.
+# The filter keeps four things of its last run: a mark of the particles and a mark of the scalar, which tell whether the data on the
+# device can be used again; the options that the factors of smoothing lengths depend on; and these factors. NO_RUN: there was no run.
 NO_RUN = None, None, None, None
 
 

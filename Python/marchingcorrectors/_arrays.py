@@ -25,7 +25,7 @@ FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
 ABSENT = 2  # MCOR_ABSENT
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 WORDS = {int: "whole number", float: "number"}
-# Words may also be the header's names: "cubic_spline" means "cubic".
+# Further words that these options take: NumPy's names of types, and mcor.h's names of kernels, such as "cubic_spline" for "cubic".
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
                                       words_of("sph_kernel")))}
@@ -284,7 +284,8 @@ class Arguments(Found):
                 take_it(ctypes.byref(self.found), self.kept[-1].ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
 
     def sums(self, name, function, *more):
-        """Returns the array (particles,) that a function of the core sums over neighbours. The function gets all masses."""
+        """Returns the array (particles,) that a function of the core sums over neighbours. The function gets the masses that were
+        found, even if the input does not use them."""
         given, values, why = c.mcor_input.from_buffer_copy(self.input), np.empty(self.count), c.mcor_message()
         given.mass = self.found.views[ROLES["mass"]]
         status = function(ctypes.byref(given), ctypes.byref(self.options), *more, self.count,

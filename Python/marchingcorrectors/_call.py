@@ -309,8 +309,8 @@ def called(function, kind, arguments, *more):
 
 
 def widen(arguments, of_surface):
-    """Returns the factors of the smoothing lengths, the volumes if they are computed, and the statistics. of_surface: this surface
-    decides on the factors; else the free surface."""
+    """Returns the factors of the smoothing lengths, the volumes if they are computed, and the statistics. of_surface: whether the
+    factors are for the surface of these options; else they are for the free surface."""
     options = arguments.options
     if not of_surface:
         arguments.options = c.mcor_options.from_buffer_copy(options)

@@ -155,7 +155,8 @@ def make_parser(command):
 
 
 def find_words(given, names, particles, command):
-    """Returns the keywords of the functions that the options give. The file gives some keywords that the options do not give."""
+    """Returns {keyword: value} for a function, from the command's options. names: the function's own keywords. With --dp, the
+    particles tell the dimension, and whether the volume follows from --dp."""
     words = {}
     for option in options_of(command):
         keyword, value = keyword_of(option), getattr(given, option[2:].replace("-", "_"), None)

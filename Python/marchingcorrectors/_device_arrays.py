@@ -36,7 +36,8 @@ def on_host(values, role):
         dtype, stream = np.dtype(interface["typestr"]), interface.get("stream")
         return _copy(interface["data"][0], interface["shape"], dtype, interface.get("strides"), stream, role)
     if hasattr(values, "__dlpack_device__") and int(values.__dlpack_device__()[0]) == ON_CUDA:
-        # 1 is CUDA's legacy default stream: the array's library makes it wait until the array is complete. The capsule frees itself.
+        # 1 is CUDA's legacy default stream: the array's library makes this stream wait until the array is complete. The capsule
+        # frees the tensor when Python deletes the capsule.
         capsule = values.__dlpack__(stream=1)
         pointer = ctypes.pythonapi.PyCapsule_GetPointer
         pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
@@ -109,7 +110,8 @@ class Driver:
             with self.current(primary):
                 memory, room = self.take(size)
             block = (ctypes.c_char * size).from_address(memory)
-            # A list's append needs no lock, which the thread may hold already.
+            # Python may delete a block in a thread that holds the lock already, so this call must not need the lock. A list's
+            # append needs no lock.
             weakref.finalize(block, self.idle.append, (memory, room)).atexit = False
             with self.current(own):
                 if stream is not None:

@@ -50,9 +50,9 @@ def in_order(paths):
 
 
 def run(given, inputs, steps, add):
-    """Writes a film of all steps, pairs of (label, function that returns a thing and its time). add(film, thing, time): adds one step, and
-    returns what is printed of it. A step that fails is reported, and left out. Returns how many steps the film has, as text. Raises
-    InvalidArgument at the end if a step failed, although the film of the others was written."""
+    """Writes a film. steps: pairs (label, function); the function returns the step's particles or surface, and its time. add(film, particles
+    or surface, time): adds one step, and returns a text to print. A step that fails is reported, and left out. Returns how many steps
+    the film has, as text. Raises InvalidArgument at the end if a step failed, although the film of the other steps was written."""
     failed, words = 0, {name: getattr(given, name) for name in ("fps", "slow", "meters_per_unit", "velocity")}
     with Film(given.output, inputs, **{name: value for name, value in words.items() if value is not None}) as film:
         for i, (label, load) in enumerate(steps):
@@ -78,7 +78,8 @@ def tell(surface, time):
 # -- films of particles --
 
 def run_particles(given, surface_of):
-    """Makes a film of particles. surface_of(particles, more): returns the surface, with the arrays `more`, and its keywords."""
+    """Makes a film of particles. surface_of(particles, more): returns the surface, and the keywords that made it. more: names of
+    arrays that the surface has in any case."""
     if given.spray is not None and (given.scalar is not None or given.spray < 1):
         raise InvalidArgument("--spray needs a number of particles from 1 on." if given.scalar is None else
                               "--spray is for the free surface: leave --scalar out.")
@@ -261,7 +262,7 @@ def label_pieces(triangles, count):
 
 def small_pieces(surface, label, positions, fluid, least):
     """Returns (piece, its particles) for each closed piece with fewer than `least` particles. The particles of a piece
-    are enclosed by the piece, or nearest to one of its points. A cavity is listed if its box lies in the box of such a piece."""
+    are enclosed by the piece, or nearest to one of its points. Also lists a cavity if its box lies in the box of such a piece."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))
@@ -301,7 +302,7 @@ def encloses(corners, points):
 
 
 def without_points(surface, left_out):
-    """Returns the surface without these points and their triangles. left_out: True for all points of each piece that goes."""
+    """Returns the surface without some pieces. left_out: whether each point is left out; all points of a piece have the same value."""
     if not left_out.any():
         return surface
     number = np.cumsum(~left_out) - 1

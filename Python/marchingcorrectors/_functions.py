@@ -35,7 +35,7 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
     Example: surface = isosurface(x, speed, 1.0, smoothing_length=h, mass=m, density=rho, attributes={"speed": speed})
 
     Returns a Surface: points, triangles, normals, attributes, statistics, and the arrays that were asked for; lines in two
-    dimensions. Points and attributes are float32 where positions or attributes are.
+    dimensions. Points are float32 if the positions are; each attribute of the surface is float32 if the given attribute is.
 
     positions: (particles, 3), length unit L. float32 and float64 arrays in C order are not
         copied, neither here nor below. Lists, data frames, and arrays that support DLPack will do, too.
@@ -69,8 +69,9 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
 
     {options}
 
-    Arrays with units, of pint, unyt or astropy: lengths are converted to the unit of the positions,
-    mass / density with them, and iso to the scalar's unit; results are plain numbers in these units.
+    Arrays with units, of pint, unyt or astropy: lengths are converted to the unit of the positions;
+    volumes, or mass / density, to this unit cubed; iso to the scalar's unit. Results are plain numbers
+    in these units.
     A call refuses arrays with units together with arrays without units.
 
     Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). What is
@@ -287,7 +288,7 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
 
     Example: image = project(x, smoothing_length=h, mass=m, direction="z"); plt.imshow(image.values, origin="lower", extent=image.extent)
 
-    Returns a Projection: values and extent of the image, exact means over pixels, so that all of the mass is there.
+    Returns a Projection: values and extent of the image, exact means over pixels, so that no mass is lost.
 
     scalar: what is integrated: (particles,), or (particles, components), whose magnitude is taken, or one component.
         By default the density: the image is then the mass per area, which needs masses, or densities.

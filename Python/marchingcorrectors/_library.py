@@ -96,7 +96,7 @@ def word_by(function):
 
 @word_by
 def _python_word(name, value):
-    """Returns Python's words for an option and its value, such as cube_size, dimension=3 or precision="double"; "" if it has none."""
+    """Returns Python's words for an option and its value, such as cube_size, dimension=3 or precision="double"; "" for a name that Python lacks."""
     known = name in c.OPTIONS or name in c.SLOTS
     if name == "fluid" and value:
         return f"fluid=('{value}', VALUE)"
@@ -134,7 +134,7 @@ def say(code, *values):
 
 
 def take_sentence(message):
-    """Returns a message of the core as a Sentence, "" if there is none, and frees it."""
+    """Returns a message of the core as a Sentence, or "" if the message is empty. Frees the message."""
     if not message.code:
         return ""
     sentence = fill_slots(lib.mcor_says_name(message.code).decode(), message.text) if message.text else say("HOST_MEMORY")
@@ -234,8 +234,8 @@ class Context:
 
     @contextlib.contextmanager
     def _alone(self):
-        """Waits until no other thread uses the context. Raises InvalidArgument in a callback of the running call,
-        which would wait for ever."""
+        """Waits until no other thread uses the context. Raises InvalidArgument if a callback of the running call wants to use the
+        context, because the callback would wait for ever."""
         if self._used_by == threading.get_ident():
             raise InvalidArgument("A progress callback cannot use the context whose call it belongs to. Use "
                                   "another Context there, or do it when the call has returned.")

@@ -51,7 +51,8 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """Returns the panel's text on a property. The default at its end is left out if it is only a word or a number, without a comma."""
+    """Returns the panel's text on a property. Leaves out the default at the text's end, unless the default has a comma: such a
+    default is more than a word or a number."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
     said, _, default = text.partition(" Default: ")
     return text if ", " in default else said

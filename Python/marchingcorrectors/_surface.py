@@ -44,7 +44,7 @@ class Result:
                    if f.name != "statistics")
 
     def _names(self, left_out=()):
-        """Lists the arrays that exist."""
+        """Returns a text with the names of the arrays that exist, for repr()."""
         names = []
         for f in fields(self):
             value = getattr(self, f.name)

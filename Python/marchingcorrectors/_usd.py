@@ -55,7 +55,7 @@ class Film:
 
     path: .usdc (binary), .usda (text) or .usd. It cannot be one of the inputs.
     fps: frames of a second of film; a step's time code is time x fps x slow.
-    slow: how many seconds of film a unit of time takes; velocities are divided by it, and so are per second of film.
+    slow: how many seconds of film a unit of time takes; velocities are divided by `slow`, to be per second of film.
     up: "y" or "z"; it may be set until the first step is added.
     meters_per_unit: how many metres a unit of length is.
     velocity: the name of the array that is the velocity; by default an array with a usual name.

@@ -335,7 +335,8 @@ class Particles(Arguments):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
     def sums(self, name, function, *more):
-        """Returns the sums, or those of the last run if the particles and the options that matter are the same."""
+        """Returns the array (particles,) as Arguments.sums() does. If the particles and the options that matter are as in the last run,
+        returns the array of the last run."""
         key = (*self.signatures()[0], self.options.sph_kernel, self.options.dimension, *self.options.periodic, *more)
         if self.choice.Made.get(name, (None,))[0] != key:
             self.choice.Made[name] = key, self._wrap(name, super().sums(name, function, *more))

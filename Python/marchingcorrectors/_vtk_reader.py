@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads solvers' own files and tables for ParaView's File > Open; several files, or the steps of one file, are time
-steps. It is part of the plugin in MarchingCorrectorsFilter.py.
+steps. This module is part of the plugin in MarchingCorrectorsFilter.py.
 
 HDF5 needs h5py in ParaView's Python."""
 from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smhint, smproperty, smproxy
@@ -40,7 +40,7 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
 
     @smproperty.stringvector(name="Types", default_values="gas")
     def SetTypes(self, types):
-        """Reads types of GADGET's layout: names or numbers, with commas between them."""
+        """Sets which types of particles are read from files of GADGET's layout: names or numbers, with commas between them."""
         if types != self._types:
             self._types, self._kept = types, (None, None)
             self.Modified()

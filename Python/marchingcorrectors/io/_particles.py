@@ -215,7 +215,7 @@ def add_velocity(read, names):
 
 
 def by_name(file, pairs):
-    """Returns {name: thing}. If several have one name, the last counts, as in VTK, with a warning."""
+    """Returns {name: thing}. If several things have the same name, the last one counts, as in VTK, with a warning."""
     found, twice = {}, None
     for name, thing in pairs:
         twice = twice or (name if name in found else None)

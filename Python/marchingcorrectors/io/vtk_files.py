@@ -72,7 +72,8 @@ def find_vertices(types, offsets, points, count):
 def take_vertices(file, body, lists, cell_arrays):
     """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
     of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become
-    arrays of the points, too. Warns if points are left out. Sets is_mesh if there are cells.
+    arrays of the points, too. Warns if points are left out. If there are cells, sets is_mesh to whether none of
+    them is a vertex. Returns the body.
 
     lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
     cell_arrays: {name: function that returns the array}.
@@ -99,9 +100,9 @@ def take_vertices(file, body, lists, cell_arrays):
 
 
 # -- XML --
-# An array is text; or base64 in the file; or base64 or bytes in <AppendedData>, at an offset behind the underscore there. Before the bytes
-# of an array stands their number. Before packed bytes stand the number of blocks, the size of a block, the size of the last block if it is
-# shorter (else 0), and the packed size of each block.
+# An array is text or base64 in its own element, or base64 or bytes in <AppendedData>. There, its offset counts from the byte behind the
+# underscore. The number of its bytes stands before the bytes. If the bytes are packed, the number of blocks, the size of a block, the size
+# of the last block if it is shorter (else 0), and the packed size of each block stand before them.
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}
@@ -167,7 +168,8 @@ class Array:
 
 
 def arrays_in(element, part, count):
-    """Lists the arrays of numbers in elements that are called `part`. count: how many values each array has; None: the array tells it."""
+    """Lists the arrays of numbers in elements that are called `part`. count: how many tuples each array has; None: the
+    array's NumberOfTuples tells."""
     return [Array(each, 0 if each.get("Name") == "connectivity" and part in CELLS else count) for inside in element.iter(part)
             for each in inside.findall("DataArray") if each.get("type") in KINDS]
 

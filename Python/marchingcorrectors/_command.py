@@ -77,8 +77,8 @@ COMMANDS = {
     "gauge": (GAUGE, "water levels along lines", ".csv"),
     "slice": (PROBE, "the field on a plane", ".vti or .npz"),
     "line": (PROBE, "the field on a line", ".vtp, .csv or .npz")}
-# The options that are not keywords of the functions: OWN has the options of all commands, OF the options of each
-# command.
+# The options that are not keywords of the functions. OWN: options that all commands have. OF: for each command, its further
+# options.
 OWN = {"--dp", "--coefh", "--walls", "--solids", "--threads", "--quiet"}
 OF = {"surface": {"--scalar", "--iso", "--free-surface", "--curvature", "--cubes", "--times", "--attributes", "--no-attributes"},
       "gauge": {"--iso", "--free-surface", "--gauge"}, "slice": {"--slice", "--resolution", "--attributes", "--no-attributes"},

@@ -257,7 +257,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
     Example: s = widening(x, smoothing_length=h, volume=v, widen=2)
 
     Returns s, (particles,) float64, from 1 to widen. With return_volume=True, returns s and the volumes, which are
-    computed from the smoothing lengths h themselves; None in their place if volumes are given. A surface made with s * h
+    computed from the smoothing lengths h themselves, or s and None if volumes are given. A surface made with s * h
     and these volumes is, bit for bit, the surface made with widen, for the same cube_size and level_limit=0.
 
     iso: the greatest iso value of the free surface; None: the factors are for the surface of a scalar.

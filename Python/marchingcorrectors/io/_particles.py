@@ -262,7 +262,7 @@ def ending_of(path):
 
 
 def inflate(path, data, least=None):
-    """Returns gzipped data unpacked, or at most their first `least` bytes; other data as they are, whole."""
+    """Unpacks gzipped data: all of them, or at most the first `least` bytes. Returns other data as they are, whole."""
     if not data.startswith(b"\x1f\x8b"):
         return data
     found, left = [], 1000 * len(data) + 1024  # Deflate cannot pack more densely.

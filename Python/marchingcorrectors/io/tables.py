@@ -30,7 +30,7 @@ def lines_of(path):
 
 
 def to_number(cell):
-    """Reads a number as tables have it, also with Fortran's D or a decimal comma; an empty cell is NaN. None: no number."""
+    """Reads a number as tables have it, also with Fortran's D or a decimal comma. An empty cell is NaN. Returns None if the cell holds no number."""
     cell = cell.strip()
     if not NUMBER.fullmatch(cell):
         return None if cell else np.nan

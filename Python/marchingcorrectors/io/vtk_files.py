@@ -100,9 +100,9 @@ def take_vertices(file, body, lists, cell_arrays):
 
 
 # -- XML --
-# An array is text or base64 in its own element, or base64 or bytes in <AppendedData>. There, its offset counts from the byte behind the
-# underscore. The number of its bytes stands before the bytes. If the bytes are packed, the number of blocks, the size of a block, the size
-# of the last block if it is shorter (else 0), and the packed size of each block stand before them.
+# An array is text or base64 in its own element, or base64 or bytes in <AppendedData>. An offset in <AppendedData> counts from the byte
+# behind the underscore. The number of an array's bytes stands before the bytes. Packed bytes have other numbers before them: the number of
+# blocks, the size of a block, the size of the last block if it is shorter (else 0), and the packed size of each block.
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}

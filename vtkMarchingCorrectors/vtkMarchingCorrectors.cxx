@@ -299,7 +299,7 @@ bool vtkMarchingCorrectors::FindWidening(
 
 namespace
 {
-// Lists the options on which factors of widening depend, and some more.
+// Lists the values of all options on which factors of widening may depend.
 std::vector<double> ListFactorOptions(const mcor_options& o)
 {
   const int SURFACE = 0, PROBE = 0, GAUGE = 0, ALL = 0, KEEPS = 1;
@@ -405,8 +405,8 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
   }
 }
 
-// Finds what the next update would find. Each value needs only some of the arrays: the range no
-// smoothing length, the number of cells no scalar. The iso value is the first block's.
+// Finds what the next update would find. Each value needs only some of the arrays: the range needs
+// no smoothing length, the number of cells needs no scalar. The iso value is the first block's.
 vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
 {
   vtkAhead& next = this->Next;

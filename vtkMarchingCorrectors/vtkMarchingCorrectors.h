@@ -32,8 +32,8 @@
  * with several iso values, the iso value is the last of the scalars. The output field data holds the
  * arrays of the input's field data, and "IsoValues", whose component has the name of the point array
  * that gives each point's iso value. GetRunStatistics() holds statistics of the run, "Device" and
- * "Platform", and for each parameter the value in use. All but the device, the platform and the
- * costs of the run depends only on the input and the properties.
+ * "Platform", and for each parameter the value in use. Everything except the device, the platform
+ * and the costs of the run depends only on the input and the properties.
  *
  * If processes share a run, see SetController(), each gets the part of the surface in its share of
  * space. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
@@ -202,9 +202,10 @@ public:
 
   ///@{
   /**
-   * UNIFORM: cubes of one size. ADAPTIVE (the default): cubes are 2, 4, ... times as large where
-   * all smoothing lengths are, see MCOR_CUBE_LEVELS in mcor.h; the surface is closed across sizes.
-   * CubeLevelLimit: the highest power of 2, 0 to 24 (the default).
+   * UNIFORM: cubes of one size. ADAPTIVE (the default): where all smoothing lengths are at least 2,
+   * 4, ... times the smallest one, cubes are 2, 4, ... times as large, see MCOR_CUBE_LEVELS in
+   * mcor.h. The surface is closed where cubes of different sizes meet. CubeLevelLimit: the largest
+   * cubes are at most 2 to this power times as large; 0 to 24 (the default).
    */
   vtkSPHClampMacro(CubeSizeMode, int, ADAPTIVE, UNIFORM, ADAPTIVE);
   void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
@@ -353,7 +354,8 @@ public:
    *   "A_Dot_B". It is "IsoValue" for the free surface and where a computed array has that name.
    * - Gradients, "Gradients": of the field, unit of the scalar / L.
    * - WeightSum, "WeightSum": the weight used for trimming, no unit.
-   * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, even if that is WEIGHT_SUM.
+   * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection. It is also
+   *   computed if BoundaryDetection is WEIGHT_SUM.
    * - Curvature, "MeanCurvature" and "GaussCurvature": of the field's own surface, unit 1 / L and
    *   1 / L^2; the mean curvature of a drop of radius R is 1 / R. In two dimensions there is no
    *   Gaussian curvature.

@@ -356,7 +356,8 @@ public:
    * The processes that share a run; VTK's global controller by default. With MPI and more than one
    * process, all update together, each with some of the particles (without those that vtkGhostType
    * marks as duplicates) or none, and results are the same as from one process, to the last bit. If
-   * one process fails, all do. If blocks are taken apart, all processes must have the same number.
+   * one process fails, all do. If blocks are APART, all processes must have
+   * the same number of blocks.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
@@ -373,8 +374,8 @@ public:
    * One array for each number of the last update: "FlatLoops" is flat_loops of mcor_statistics in
    * mcor.h, and so on; "Seconds" has a named component for each phase, for building the OpenCL
    * program, and in total. GetStatistics() returns text, a line "Name: values" for each. If blocks
-   * are taken apart, costs are sums, and the rest is of the last block. Empty if nothing ran. The
-   * next update makes a new object and leaves this one as it is.
+   * are APART, costs are sums over blocks, and all else is of the last block. Empty if nothing ran.
+   * The next update makes a new object and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
   const char* GetStatistics();
@@ -388,7 +389,7 @@ public:
   /** Lists the OpenCL devices, one a line: "number: device (platform)". Empty: there is none. */
   static std::string ListDevices();
 
-  /** Frees the memory on the device; during a run, at its end. The next run must send the particles again. */
+  /** Frees the memory on the device, now or at the end of the present run. The next run must send the particles again. */
   void ReleaseDeviceMemory();
 
   ///@{

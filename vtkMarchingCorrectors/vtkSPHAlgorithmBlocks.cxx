@@ -204,8 +204,8 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-// For each end of each axis, keeps the `far` + 1 values nearest to the end; values at upper ends are
-// negated.
+// For each end of each axis, keeps the `far` + 1 coordinates nearest to the end: at most `far`
+// particles are left out there. Coordinates for upper ends are negated.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {
   const auto run = vtkRun::Make(this);

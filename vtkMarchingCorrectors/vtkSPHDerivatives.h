@@ -51,7 +51,7 @@ public:
   vtkTypeMacro(vtkSPHDerivatives, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /** The particles with the new arrays, of the class of the input. */
+  /** Returns the particles with the new arrays, in data of the same class as the input. */
   vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
 
   /** Also leave solid particles out when volumes are computed from positions. Off by default. */
@@ -72,7 +72,8 @@ public:
   ///@{
   /**
    * Add these quantities of the gradient of a vector; no effect for other arrays. On by default,
-   * except the strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
+   * except the strain rate. The unit is the array's unit / L, and its square for Q-criterion and
+   * Lambda2.
    */
   vtkSPHFlagMacro(ComputeDivergence, 1);
   vtkSPHFlagMacro(ComputeVorticity, 1);

@@ -21,8 +21,8 @@
  *     time         of the particles
  *     section      the name
  *     area         of the part of the section in fluid, A
- *     volume_flux  the integral of v . n over it, n being the normal
- *     mass_flux    of rho v . n; NaN without densities
+ *     volume_flux  the integral of v . n over this part, n being the normal
+ *     mass_flux    the integral of rho v . n over this part; NaN without densities
  *     velocity     volume_flux / area; NaN where the area is 0
  *
  * The density is the density array, the constant Density, or mass / volume if both are given.

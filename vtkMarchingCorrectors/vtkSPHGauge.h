@@ -18,7 +18,7 @@
  *     gauge       the name
  *     state       dry: no fluid on the line; full: fluid at its end; wet: else
  *     first       distance from the line's beginning to where fluid first ends
- *     last        distance to where it ends last; for a full gauge, the length of the line
+ *     last        distance to where fluid last ends; for a full gauge, the length of the line
  *     depth       length of the line that is in fluid
  *     crossings   how often the line goes through the surface
  *     x, y, z     the place of `last`

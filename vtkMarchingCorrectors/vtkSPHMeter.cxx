@@ -83,7 +83,7 @@ vtkSPHWanted vtkSPHMeter::GetWanted() const
   return vtkSPHWanted();
 }
 
-// Returns false, after an error, if two places have one name.
+// Returns false, after an error, if two places have the same name.
 bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
 {
   std::set<std::string> names;

@@ -8,11 +8,11 @@
  * and gives the mean of the integrals over each pixel of an image, see mcor_project in mcor.h. The
  * image has all of the mass that falls into it.
  *
- * The scalar is a point array, or of vectors the magnitude or ScalarComponent. By default it is the
- * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
- * over the lines of sight, which needs masses, or densities and volumes. Otherwise the array has
- * the scalar's name. With WeightArrayName the array is the mean of the scalar along the line of
- * sight; NaN where there is nothing.
+ * The scalar is a point array; vectors count by their magnitude or by one component, see
+ * ScalarComponent. By default the scalar is the density, so that the array of the output is the
+ * column density, "ColumnDensity": the sum of m W over the lines of sight, which needs masses, or
+ * densities and volumes. Otherwise the array has the scalar's name. With WeightArrayName the array
+ * is the mean of the scalar along the line of sight; NaN where there is nothing.
  *
  * Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower end
  * of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction

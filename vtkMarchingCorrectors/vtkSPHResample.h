@@ -11,9 +11,9 @@
  *     VOLUME            a vtkImageData around that box
  *
  * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the
- * middle along the longest side of its box, and the volume is the box, all with a margin of 3 % of
- * this side. A slice of particles in a plane always lies in their plane. Where there is no fluid
- * arrays are NaN, see SetNaNOutside(), and a slice has no quads, see SetOnlyFluid().
+ * middle along the longest side of the fluid's box, and the volume is this box, all with a margin
+ * of 3 % of this side. A slice of particles in a plane always lies in their plane. Where there is
+ * no fluid arrays are NaN, see SetNaNOutside(), and a slice has no quads, see SetOnlyFluid().
  *
  * Blocks of composite data always form one set of particles. If the controller has several
  * processes, each has a part of the volume; a slice or line is on the first one.

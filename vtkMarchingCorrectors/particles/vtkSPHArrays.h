@@ -107,7 +107,7 @@ void vtkSPHAddArray(
   vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array);
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
 ///@{
-/** Adds numbers as one tuple, of 64-bit integers or of doubles. */
+/** Adds an array with one tuple, the numbers: 64-bit integers if T is an integer type, else doubles. */
 template <typename T>
 void vtkSPHAdd(vtkFieldData* data, const char* name, const std::vector<T>& values)
 {
@@ -131,7 +131,7 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
   vtkSPHAdd(data, name, std::vector<T>(values, values + N));
 }
 ///@}
-/** Adds one tuple for each level, its count, up to the last level with a count above 0; at least one. */
+/** Adds an array with one count for each level of cubes, up to the last level with a count above 0; at least one count. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 

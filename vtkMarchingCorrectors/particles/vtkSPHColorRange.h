@@ -15,13 +15,14 @@ class vtkDataArray;
 class vtkDataSet;
 
 /**
- * Finds a range of values that 98 % of a surface's area have, or of the length of lines, or of the
- * points of other data. So a few fast drops or sharp corners do not decide all colours.
+ * Finds the range of values without the lowest and the highest 1 %. Values count by the area of a
+ * surface, by the length of lines, or by the number of points of other data. So a few fast drops or
+ * sharp corners do not decide all colours.
  */
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHColorRange
 {
 public:
-  /** isLeftOut: for data without polygons and lines: the points that do not count; may be empty. */
+  /** isLeftOut: marks the points that do not count; empty: all count. Used if the data have no polygons and no lines. */
   explicit vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut = {});
 
   /**

@@ -41,7 +41,7 @@ vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
   return copy;
 }
 
-/** Returns the index of the requested array; -1 if it was requested by name, or is not there. */
+/** Returns the index of the requested array in `data`; -1 if the request has a name, or if `data` lacks the array. */
 int IndexOf(const vtkSPHRequest& request, vtkPointData* data)
 {
   int index = request.Name.empty() && request.Array ? data->GetNumberOfArrays() - 1 : -1;

@@ -44,7 +44,7 @@ struct vtkSPHWanted
   unsigned Wants = MCOR_WANT_SIZES; ///< bits of mcor_want
   vtkSPHRequest Scalar, ScalarDot;
   int ScalarComponent = MCOR_MAGNITUDE;
-  std::string Velocity, Weight;   ///< names; empty: velocity is found, there is no weight
+  std::string Velocity, Weight;   ///< names; if empty, a velocity is found, a weight is not used
   std::vector<std::string> Taken; ///< names of computed arrays
   bool FreeSurface = false, HasIsoValues = false, Filled = false;
 };
@@ -91,8 +91,8 @@ public:
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 
   ///@{
-  /** The name of an array that sends sums over neighbours, or factors of widening, to other
-   * processes. */
+  /** Returns the name under which an array of sums over neighbours, or of factors of widening, is
+   * sent to other processes. */
   static std::string NameMade(const std::string& name);
   /** Whether NameMade() returned this name. */
   static bool IsMade(const char* name);
@@ -102,7 +102,7 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
-  /** Calls mcor_has_free_surface() for these particles; after Collect(). */
+  /** Calls mcor_has_free_surface() for these particles. Call Collect() first. */
   bool HasFreeSurface(const mcor_ranks* ranks) const;
 
   /** Returns the condition for fluid, such as "ParticleType = 0"; empty if all particles are fluid. */
@@ -129,8 +129,8 @@ public:
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
-  /** Returns the array of this name that vtkSPHSumNeighbors() fills, or the one that it filled for the
-   * same particles before. If the sums fail, returns null and sets Error. */
+  /** Returns an array of this name, filled by vtkSPHSumNeighbors(). An array that was filled before
+   * for the same particles is used again. If the sums fail, returns null and sets Error. */
   vtkSmartPointer<vtkDataArray> SumNeighbors(const char* name, double ratio);
   vtkSmartPointer<vtkAbstractArray> ArrayOf(int index) const;
   std::vector<std::uint64_t> Sign() const;

@@ -22,7 +22,7 @@ namespace
 {
 using Triple = std::array<double, 3>;
 
-/** How far rounding may have moved a point off its side, as a share of the period. */
+/** How far rounding may have moved a point away from a side of the period, as a share of the period. */
 constexpr double SideTolerance = 1e-5;
 }
 

@@ -190,8 +190,8 @@ struct NumbersInWhole
 
 /**
  * Finds the number of each of this rank's points in the whole surface: the index that the point has
- * if one process makes all. Points with the same key are one. Finds the numbers of this rank's
- * triangles, too, whose keys ascend. Collective.
+ * if one process makes the whole surface. Points with the same key have one number. Also finds the
+ * numbers of this rank's triangles; the keys of these triangles ascend. Collective.
  */
 NumbersInWhole NumberSurface(vtkSPHRanks& ranks, const mcor_surface& surface)
 {

@@ -99,7 +99,7 @@ public:
     return true;
   }
 
-  /** Takes the place of a Reduce() or Gather(), which does nothing on other ranks if this rank stops. Returns whether no rank stops. */
+  /** Call this where other ranks call Reduce() or Gather(). If `stops` is set, those calls do nothing. Returns true if no rank stops. */
   bool Stop(bool stops) { return vtkSPHAwaitRanks(this->Controller, !stops); }
 
   /**

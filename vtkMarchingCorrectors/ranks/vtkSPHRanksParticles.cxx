@@ -155,7 +155,7 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
 
 namespace
 {
-/** Returns arrays of `count` tuples: tuple i is put at place i of `places`, and all other tuples are 0. */
+/** Returns arrays of `count` tuples. Tuple i of `tuples` becomes tuple number places[i]; all other tuples are 0. */
 vtkSPHRanksArrays PutTuples(const vtkSPHRanksArrays& tuples, vtkIdList* places, vtkIdType count)
 {
   vtkNew<vtkIdList> order;

@@ -94,13 +94,13 @@ private:
    * of `count` ranks from `rank` on, which the k-d tree divides.
    */
   bool Reaches(int rank, int count, const double at[3], double radius) const;
-  /** Adds the ranks of the group whose boxes the cube reaches. */
+  /** Adds to `found` the ranks of the group whose boxes the cube reaches. */
   void AddReached(
     int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 
   const mcor_options* Options = nullptr;
   const mcor_globals* Globals = nullptr;
-  double Margin = 0.0; ///< a box may need any particle whose support misses it by less
+  double Margin = 0.0; ///< a box may need a particle whose support misses the box by less
   std::vector<vtkSPHRanksBox> Boxes; ///< by rank
 };
 

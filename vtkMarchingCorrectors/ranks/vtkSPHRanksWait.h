@@ -26,15 +26,15 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);
 
 /**
- * Gives particles, or a surface, without points the arrays that other processes' points have.
- * Collective.
+ * If this process has no points, gives its particles or surface the same arrays as on the other
+ * processes, without values. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
   vtkMultiProcessController* controller, vtkPolyData* points);
 
 /**
- * Returns when all ranks have called this, and says whether all go on. Each message doubles the
- * number of ranks that a rank has heard of.
+ * Returns when all ranks have called this function: true if all set `goesOn`. Each message doubles
+ * the number of ranks that a rank has heard of.
  */
 inline bool vtkSPHAwaitRanks(vtkMPIController* controller, bool goesOn = true)
 {

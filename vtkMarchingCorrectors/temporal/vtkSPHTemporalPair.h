@@ -32,8 +32,8 @@ class vtkSPHTemporalPair
 {
 public:
   /**
-   * Matches the particles of two steps. If the steps are the same as in the last call, keeps its
-   * match. Returns false if the particles cannot be matched; Error then says why.
+   * Matches the particles of two steps. If the steps are the same as in the last call, keeps the
+   * last match. Returns false if the particles cannot be matched; Error then says why.
    */
   bool Match(vtkPointSet* first, vtkPointSet* second, const vtkSPHTemporalChoice& choice);
 

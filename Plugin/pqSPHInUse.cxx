@@ -67,13 +67,14 @@ const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "Ne
 // The items of ParaView's lists of arrays have these roles: association and name.
 constexpr int ASSOCIATION = Qt::UserRole + 1, ARRAY_NAME = Qt::UserRole + 2;
 
-// Numbers have six digits, as in the rest of the panel.
+// Rounds a number to six digits, which the rest of the panel shows, too.
 double rounded(double value)
 {
   return QString::number(value).toDouble();
 }
 
-// Returns the values as text; "-" if all are 0 or empty: nothing was drawn, or a free surface has none.
+// Returns the values as text; "-" if all values are 0 or empty, because nothing was drawn, or because
+// a free surface has no such value.
 QString textOf(vtkSMProperty* property)
 {
   const vtkSMPropertyHelper values(property, true);
@@ -589,8 +590,8 @@ void pqSPHInUse::narrowColours()
   }
 }
 
-// Shows what the next Apply would find: copies it from a hidden filter with the values that the
-// panel shows, applied or not. The range that it finds is the domain of the list of iso values.
+// Shows what the next Apply would find. A hidden filter with the values that the panel shows, applied
+// or not, finds this. The range that the hidden filter finds is the domain of the list of iso values.
 void pqSPHInUse::lookAhead()
 {
   SCOPED_UNDO_EXCLUDE(); // the user did nothing

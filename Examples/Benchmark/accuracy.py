@@ -18,7 +18,7 @@ LENGTHS = (1.0, 1.3, 1.7)  # Smoothing lengths in spacings.
 
 
 def lattice(*ranges):
-    """Returns particles in the middles of the cubes between whole numbers."""
+    """Returns the centres of cubes with edges of 1. Each range has the first and the last coordinate along one axis."""
     return np.stack(np.meshgrid(*[np.arange(*r) + 0.5 for r in ranges], indexing="ij"), -1).reshape(-1, 3)
 
 
@@ -138,7 +138,8 @@ def attributes():
 
 
 def mean_and_corrected(x, values, h, volume, points):
-    """Returns, at each point, the Shepard mean, the value of a moving least squares fit of first order, and the range of the particles around."""
+    """Returns four arrays, with values at each point: the Shepard mean; the value of a moving least squares fit of first order; and the
+    least and the greatest value of the particles that reach the point."""
     from scipy.spatial import cKDTree
     near = cKDTree(x).query_ball_point(points, 2 * np.max(h))
     i, j = np.repeat(np.arange(len(points)), [len(some) for some in near]), np.concatenate([np.array(some, int) for some in near])

@@ -25,7 +25,7 @@ import tables
 import vtk
 from measure import Program, Report, Sets, count_of, machine
 
-# sizes: numbers of particles; quick: the numbers with --quick.
+# sizes: numbers of particles; quick: the numbers of particles with --quick; runs: the usual value of --runs.
 Case = collections.namedtuple("Case", "make title sizes quick runs", defaults=["670k", "6k", 3])
 LARGE = "60k,670k,3M,10M"
 CASES = {
@@ -46,7 +46,7 @@ QUICK_PAPER = {"rings": 20000, "tsunami": 6000, "dam": 6000}
 
 
 class Benchmark:
-    """Holds all that cases need: particle sets, the program, how often, how large, where to write."""
+    """Holds what the cases need: the particle sets and their sizes, the program, the number of runs, and the report."""
 
     def __init__(self, arguments, folder):
         self.report, self.folder = Report(), folder

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""All cases of the benchmark but the tables; see README.md."""
+"""The cases of the benchmark that are not tables; see README.md."""
 import pathlib
 import statistics
 import time
@@ -75,11 +75,11 @@ def keys_of(bricks):
 
 
 def distance(benchmark):
-    """Measures how far surfaces on adaptive and on uniform cubes are apart. There: from each vertex on adaptive cubes to
-    the nearest one on uniform cubes, in edges of the smallest cube; usually both are the same crossing of a line of the
-    lattice. Back: from each vertex on uniform cubes to the surface on adaptive cubes, in edges of the cube at that place.
-    The levels of cubes are computed here from SmoothingLength, as for the cubic spline, an h scale of 1, and only fluid
-    particles."""
+    """Measures how far surfaces on adaptive and on uniform cubes are apart. "there" is the distance from each vertex on
+    adaptive cubes to the nearest vertex on uniform cubes, in edges of the smallest cube; usually both vertices are the
+    same crossing of a line of the lattice. "back" is the distance from each vertex on uniform cubes to the surface on
+    adaptive cubes, in edges of the adaptive cube around the vertex. The levels of cubes are computed here from
+    SmoothingLength, as for the cubic spline, an h scale of 1, and only fluid particles."""
     out, surface = benchmark.report, {}
     path = benchmark.files[0] if benchmark.files else benchmark.sets.get("graded-10", benchmark.sizes[-1])
     for mode in ("uniform", "adaptive"):
@@ -216,8 +216,9 @@ class Watch:
             self.filter.AbortExecuteOn()
 
     def run(self, stop_at=None):
-        """Returns the seconds of the whole run; the longest gaps between reports, by clock and by processors, with the phase in which each begins;
-        and the seconds from the report with number stop_at, which cancels the run, to the return; 0 without a cancelled run."""
+        """Returns three results. The first is the seconds of the whole run. The second is the longest gap between reports, by the clock and by
+        processors, each with the phase in which it begins. The third is the seconds from report number stop_at, which cancels the run, to
+        the end of the run; 0 if the run was not cancelled."""
         self.reports, self.stop_at = [], stop_at
         self.filter.AbortExecuteOff()
         self.filter.Modified()
@@ -232,9 +233,9 @@ class Watch:
 
 def cancel(benchmark):
     """Measures how long a run goes on after it is cancelled. A run stops after its next report of progress. Prints for
-    each kind of run, with all kernels compiled: the longest time without a report (of the run in which it is shortest), by
-    the clock and in processor seconds of all threads, and the phase that ran; and the longest time from a report that
-    cancels to the return, over 8 places in a run."""
+    each kind of run, with all kernels compiled: the longest time without a report, by the clock and in processor seconds
+    of all threads, and the phase that ran (the least over the runs); and the longest time from a report that cancels a run
+    to the end of the run, over 8 places in a run."""
     from marchingcorrectors import vtkMarchingCorrectors
     out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
     size, side = (64, 32) if benchmark.quick else (512, 256)
@@ -266,7 +267,7 @@ def project(benchmark):
     """Compares column densities of Evrard's sphere (density 1 / r, h of 1.2 spacings, boxes of 2.6) by project() of
     Python and by sarracen's code for the processor. sarracen's exact mode gives means over pixels, as project() does;
     otherwise sarracen evaluates kernels at the centres of pixels, or of 4 x 4 finer pixels, which are averaged. An error is the
-    largest difference from project(), over the greatest value; the exact mode's error tells how far both are right.
+    largest difference from project(), over the greatest value; the exact mode's error tells how closely both programs agree.
     Seconds are by the clock and of processors."""
     import marchingcorrectors
     from sarracen.interpolate.cpu_backend import CPUBackend
@@ -319,7 +320,7 @@ class Walls:
         return np.min([*(points - self.low).T, *(self.high - points).T], axis=0)
 
     def distance(self, points):
-        """Returns the distance from the wall; negative behind it."""
+        """Returns the distance of each point from the nearest wall; it is negative for points behind the wall."""
         tank = self.tank(points)
         if self.box is None:
             return tank
@@ -397,8 +398,9 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OM
 
 
 class Model:
-    """Divides a box of particles, halving the longest side, until each rank has its own box; lengths are in distances of particles. Copies lie in
-    shells of a given depth on the sides that a rank's box shares with other ranks."""
+    """Divides a box of particles, always halving the longest side, until each rank has its own box. The unit of length is the distance
+    between particles. A rank gets copies of other ranks' particles, which lie in shells around its box, on the sides that the box
+    shares with other boxes."""
 
     def __init__(self, count, shape, ranks):
         scale = (count / (shape[0] * shape[1] * shape[2])) ** (1 / 3)
@@ -410,7 +412,7 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns the mean number of copies of a rank, or the largest number with `most`. If a side is cut into p
+        """Returns the mean number of copies of a rank or, with `most`, the largest number. depth: of the shells. If a side is cut into p
         parts, a part has a neighbour on either side with probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
@@ -453,7 +455,7 @@ def ranks(benchmark):
                      f"{model.copies(depth):.0f}", f"{sum(found['rank_bytes_sent']) / 1e6:.1f}",
                      excess(found["rank_nodes_evaluated"])])
     out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean"], rows)
-    # With one file, all copies travel, and all particles that the first rank does not own.
+    # The first rank reads the file, so all copies are sent, and all particles that the first rank does not own.
     sent = sum(sum(found["rank_bytes_sent"]) for _, found in runs) / sum(
         sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found in runs)
     nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found in runs) /

@@ -46,7 +46,7 @@ def call(library, name, *arguments):
 
 
 def make(opencl, name, *arguments):
-    """Returns what a function of OpenCL makes; its last argument is the error."""
+    """Calls a function of OpenCL whose last argument gets the error code. Returns the object that it makes, or ends the script."""
     if not hasattr(opencl, name):
         no(f"{name} (missing)")
     error, function = c_int(), getattr(opencl, name)
@@ -56,7 +56,7 @@ def make(opencl, name, *arguments):
 
 
 def find_device(opencl):
-    """Prints all devices and what they import. Returns the first that imports file descriptors."""
+    """Prints, for each device, whether it imports memory by file descriptors. Returns the first device that does."""
     found, platforms, devices, count = None, (c_void_p * 16)(), (c_void_p * 16)(), c_uint()
     opencl.clGetPlatformIDs(16, platforms, byref(count))
     for platform in platforms[:count.value]:

@@ -6,10 +6,10 @@ particles with cubes of the same size. Needs the packages marching-correctors, n
 
   newton_compare.py [--sizes 60k] [--device cpu]     Warp's device, or that of marching-correctors
 
-newton's density is the same sum, V W with the cubic spline, where its kernels are isotropic and its positions are not smoothed; its volume is that of a
-cube, 8 r^3. So all three contour one field at 0.5. Warp's class takes values on a full grid: they are those of probe(), whose time is not counted.
-Each runs four times in a process of its own; the first time compiles, unless Warp has kept its kernels. Processor time is that of all threads, the
-least of three. Distances of vertices from the surface are |f - 0.5| / |grad f| by probe().
+newton is set to isotropic kernels and to positions that are not smoothed. Its density is then the same sum of V W with the cubic spline; the volume V
+is that of a cube, 8 r^3. So all three contour one field at 0.5. Warp's class takes values on a full grid: probe() computes them, and this time is not
+counted. Each tool runs four times in a process of its own; the first run compiles, unless Warp has kept its kernels. Processor time is that of all
+threads, the least of the last three runs. Distances of vertices from the surface are |f - 0.5| / |grad f| by probe().
 """
 import argparse
 import hashlib

@@ -38,7 +38,7 @@ def find_step(settings, scene, frame):
 
 
 def words_of(settings):
-    """Returns the settings, besides the step, that the mesh depends on, as words of series.make_surface()."""
+    """Returns the settings that the mesh depends on, besides the step, as keyword arguments of series.make_surface()."""
     return {"smoothing_length": settings.smoothing_length, "fluid": settings.fluid, "scalar": settings.scalar, "iso": settings.iso,
             "smooth": settings.smooth, "cube_size_factor": round(settings.cube_factor, 6), "least_particles": settings.least_particles,
             "arrays": [each.name for each in settings.arrays if each.keep]}

@@ -41,7 +41,7 @@ def list_arrays(particles):
 
 def make_surface(path, number, smoothing_length="", fluid="", scalar="", iso=0.5, smooth=True, cube_size_factor=0.5,
                  least_particles=0, arrays=()):
-    """Makes the surface of a step, with these arrays."""
+    """Returns the surface of step `number` of a file, with these arrays, without pieces of fewer than least_particles particles."""
     global _context
     if _context is None:
         _context = mc.Context()

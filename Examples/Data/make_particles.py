@@ -19,10 +19,10 @@ INTERVALS = {"splash": 0.02, "wave": 0.05}  # The steps are this many seconds ap
 
 
 def tank(count, ratio=1.28):
-    """Wavy tank with a free surface: ratio 1.28, of h to the spacing, gives 70 neighbours inside 2 h, 1.814 gives 200.
+    """Makes a wavy tank with a free surface. ratio: h / spacing; 1.28 gives 70 neighbours inside 2 h, 1.814 gives 200.
 
-    Jittered lattice in a 3 x 1.5 tank (m), z up, free surface z = 0.55 + waves. Arrays: SmoothingLength (constant), Density
-    (1000), Mass, Pressure (hydrostatic, Pa), Swirl (smooth, -1.5 .. 1.5; iso 0 is a gyroid-like surface through the whole tank).
+    A jittered lattice fills a tank of 3 x 1.5 m up to the free surface at z = 0.55 m + waves. z points up. Arrays:
+    SmoothingLength (constant), Density (1000), Mass, Pressure (hydrostatic, Pa), Swirl (smooth, -1.5 .. 1.5; iso 0 is a gyroid-like surface through the whole tank).
     """
     random = np.random.default_rng(477)
     dx = (3 * 1.5 * 0.55 / count) ** (1 / 3)
@@ -96,10 +96,10 @@ def lambda2(positions, wave_number, speed):
 
 
 def graded(count, ratio=1000):
-    """Particles whose size goes with the distance from the middle, for adaptive cubes; ratio: largest h / smallest h.
+    """Makes particles whose size grows with the distance from the middle, for adaptive cubes. ratio: largest h / smallest h.
 
-    Jittered shells around a small hole, a cone of them left out: the free surface goes from the hole, where particles are
-    smallest, along the cone to the outside. Arrays: SmoothingLength, Volume, Sphere (the distance from a sphere that passes
+    The particles are jittered shells around a small hole. A cone is left out. The free surface goes from the hole, where
+    particles are smallest, along the cone to the outside. Arrays: SmoothingLength, Volume, Sphere (the distance from a sphere that passes
     beside the hole, divided by the distance from the middle).
     """
     def shells(step):
@@ -124,10 +124,10 @@ def graded(count, ratio=1000):
 
 
 def wave(count, ratio=1.3, time=0.0):
-    """A wave in a flume, in two dimensions, y = 0, for lines; ratio: h / spacing.
+    """Makes a wave in a flume, in two dimensions (y = 0), for lines. ratio: h / spacing.
 
-    Fluid and walls: a jittered lattice in a flume 3 m long, under a surface with a steep wave and a few drops before its crest,
-    around a cylinder. With --steps the wave moves along the flume, by 0.05 s from step to step. Masses are per metre of width.
+    Fluid and walls are a jittered lattice. The flume is 3 m long, with a cylinder. The surface has a steep wave, and a few drops
+    fly before its crest. With --steps the wave moves along the flume, by 0.05 s from step to step. Masses are per metre of width.
     Arrays: SmoothingLength (constant), Density (1000), Mass, Type (0 fluid, 1 wall), Pressure (hydrostatic, Pa), Velocity (of a
     solitary wave, m/s).
     """
@@ -164,10 +164,10 @@ def wave(count, ratio=1.3, time=0.0):
 
 
 def splash(count, ratio=1.3, time=0.1):
-    """A crown that rises from a pool and falls apart into drops; ratio: h / spacing.
+    """Makes a crown that rises from a pool and falls apart into drops. ratio: h / spacing.
 
-    z up, metres. The sheet of the crown is thrown up at time 0 along a ring of radius 0.3, and each of its particles flies
-    freely; with --steps every 0.02 s. Arrays: SmoothingLength (constant), Density (1000), Mass, Velocity, Id.
+    z points up; lengths are in metres. The sheet of the crown is thrown up at time 0 along a ring of radius 0.3, and each of
+    its particles flies freely. With --steps the steps are 0.02 s apart. Arrays: SmoothingLength (constant), Density (1000), Mass, Velocity, Id.
     """
     radius, depth, layers, fingers = 0.8, 0.15, 3, 14
     dx = (math.pi * radius ** 2 * depth / (0.8 * count)) ** (1 / 3)
@@ -197,7 +197,7 @@ def splash(count, ratio=1.3, time=0.1):
 
 
 def plane(count, jitter=0.15):
-    """A jittered lattice in the plane z = 0, of spacing 1, with a scalar that winds: Swirl; Mass and Density are 1."""
+    """Makes a jittered lattice of spacing 1 in the plane z = 0. Arrays: Swirl, whose isolines wind; Mass and Density, which are 1."""
     side = round(count ** 0.5)
     j, i = np.mgrid[0:side, 0:side]
     places = np.stack([i.ravel(), j.ravel()]) + np.random.default_rng(1).uniform(-jitter, jitter, (2, side * side))
@@ -207,8 +207,8 @@ def plane(count, jitter=0.15):
 
 
 def tangents(p):
-    """Returns the line element at each node of a closed polygon: half the way from the node before to the node
-    behind."""
+    """Returns the line element at each node of a closed polygon: half the vector from the previous to the next
+    node."""
     return 0.5 * (np.roll(p, -1, 0) - np.roll(p, 1, 0))
 
 
@@ -275,11 +275,11 @@ def deposit(rings, sigmas, origin, dims, dx, cut=4.0):
 
 
 def vortex_rings(count, keep_all=False, threshold=1e-3):
-    """Two vortex rings in head-on collision, on a lattice with h = dx, as remeshing in a vortex particle method leaves them.
+    """Makes two vortex rings in head-on collision, on a lattice with h = dx, as remeshing in a vortex particle method does.
 
-    The kernel that goes with them is M'4 (Monaghan 1985) with support 2 h. Two coaxial rings of radius 1 and circulation 1 and
-    -1, perturbed by azimuthal waves, move by the Rosenhead-Moore (regularised Biot-Savart) law, RK4, until they meet at z = 0,
-    grow in radius, get thin. The vorticity at a lattice point is the line integral of a 3D Gaussian of core radius sigma;
+    The kernel for these particles is M'4 (Monaghan 1985) with support 2 h. Two coaxial rings of radius 1 and circulation 1 and
+    -1, perturbed by azimuthal waves, move by the Rosenhead-Moore (regularised Biot-Savart) law, RK4. They meet at z = 0,
+    grow in radius and become thin. The vorticity at a lattice point is the line integral of a 3D Gaussian of core radius sigma;
     sigma^2 * length is kept constant while a ring stretches. Arrays: Vorticity, VorticityMagnitude, SmoothingLength, Volume.
     Particles of negligible vorticity are dropped, unless all are kept.
     """

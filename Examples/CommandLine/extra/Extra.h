@@ -16,9 +16,9 @@ struct PictureOptions;
 
 /// Draws a picture of a surface, or of a probed data set, inside the outline of a frame, and returns
 /// the bytes of a .png file. In a series, such as a film's steps, the view has room for all pictures
-/// so far: the eye moves back if something would be cut off, and otherwise stays. file: its name in
-/// the sentence of a std::runtime_error; sliceAxis: the axis along which a slice is seen; below 0:
-/// there is no slice.
+/// so far: the eye moves back if something would be cut off, and otherwise stays. file: the picture's
+/// name, for the sentence of a std::runtime_error. sliceAxis: the axis along which the viewer looks at
+/// a slice; below 0: there is no slice.
 using Picture = std::function<std::string(const std::string& file, vtkDataSet* data,
   vtkDataSet* frame, const ColorScale& colors, int sliceAxis)>;
 
@@ -30,9 +30,9 @@ using Picture = std::function<std::string(const std::string& file, vtkDataSet* d
 /// through an X server and finds none: VTK itself would abort.
 Picture NewPicture(const PictureOptions& options);
 
-/// Reads the points of one step of a .vtkhdf file, or lists the times of its steps, if it has any. Reads poly
-/// data and steps by itself, because older versions of VTK's reader know neither. Refuses a file if some
-/// of its values lie in other files.
+/// ReadHdf() returns the points of one step of a .vtkhdf file; ListHdfTimes() returns the times of the steps,
+/// none for a file without steps. VTK's reader is not used for poly data and for steps, because its older
+/// versions know neither. A file is refused if some of its values lie in other files.
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
 

@@ -213,7 +213,7 @@ public:
     {
       this->ShowBar(colors, data);
     }
-    // Only particles of DualSPHysics have an array Idp; its z axis points upwards.
+    // Only DualSPHysics writes an array Idp, and in DualSPHysics the z axis points upwards.
     const bool isUpright = frame->GetPointData()->HasArray("Idp");
     const Vector up =
       AxisOf(!this->Options.Up.empty() ? this->Options.Up : isUpright ? "z" : "y");

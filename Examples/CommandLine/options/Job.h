@@ -87,8 +87,8 @@ struct Job
   }
   /// Whether OUTPUT is a table of the field at a file's points, with a row for each step and point.
   bool IsPointTable() const;
-  /// Lists the files that the command line names to be read. Leaves out files that only these files
-  /// name. Some names may be empty.
+  /// Lists the files to read that the command line names, without the files that are named inside
+  /// them. Some names may be empty.
   std::vector<std::string> InputFiles() const;
   /// Returns one of the modes, which the options and the names of the files tell.
   unsigned Mode() const;
@@ -115,10 +115,11 @@ struct Job
   double TimeStep = 1.0; ///< time between the steps of a film of particle files
   SliceOptions Slice;
   std::vector<Place> Places; ///< gauges, or sections
-  /// Upright gauges over a rectangle: counts along x and y, and bounds. Unless empty, no other gauges
-  /// are given.
+  /// The numbers of --gauge-grid, upright gauges over a rectangle: counts along x and y, then x0, x1, y0,
+  /// y1, z0, z1; empty: there is no grid. If there is a grid, no other gauges are given.
   std::vector<double> Grid;
-  /// The particles get the gradient of this array, and what follows from the gradient.
+  /// The particles get the gradient of this array, and arrays that follow from the gradient, such as the
+  /// vorticity; empty: no array.
   std::string Derive;
 
   std::string Scalar;

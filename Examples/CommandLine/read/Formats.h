@@ -47,8 +47,8 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Returns the time in the field data (TimeValue, TIME, Time or time) within the first 64 KiB of the file, or nothing.
 /// Points and their arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
-/// Returns the number in the first of the arrays `names` that the same field data have with one finite number, or
-/// nothing.
+/// Looks for the arrays `names`, in this order, in the same field data. Returns the number in the first array that
+/// holds exactly one finite number, or nothing.
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 

@@ -41,7 +41,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The files that the run reads, as CheckRegularFile() has met them.
+/// The files that the run reads, by device and inode. CheckRegularFile() adds them.
 std::set<std::pair<dev_t, ino_t>>& Sources()
 {
   static std::set<std::pair<dev_t, ino_t>> sources;

@@ -304,8 +304,9 @@ bool FindDumpStep(Lines& lines, Step& step)
   return false;
 }
 
-/// Returns the columns of a step's positions: x, or unwrapped xu; or xs or xsu, shares of the cell,
-/// which are replaced by positions first.
+/// Returns the columns of a step's positions: x, y, z, or xu, yu, zu (unwrapped). If the step only has
+/// shares of the cell (xs, ys, zs or xsu, ysu, zsu), replaces the shares by positions, and returns their
+/// columns.
 std::vector<std::size_t> PositionsOf(const std::string& file, Step& step)
 {
   Table& table = step.Columns;
@@ -412,8 +413,8 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   }
   const bool beginsStep = behind.empty() ||
     (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(behind[0], "ITEM:"));
-  // Behind a later step, a line with another number of words is reported when the next step is
-  // read.
+  // A line with another number of words behind a step is reported here only for the first step; for
+  // a later one, it is reported when the next step is read.
   lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
     " is one more than the " + std::to_string(step.Count) +
       " particles that the step says it has; correct that number");

@@ -173,8 +173,8 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, ch
 namespace
 {
 
-/// Finds the component in a name (v:0, v_x, v.x, v[0], v(0), VelX). base: becomes the name without
-/// it. Returns the component's number; below 0: none.
+/// Finds the component that a name ends in (v:0, v_x, v.x, v[0], v(0), VelX). Returns the component's
+/// number; below 0: the name has none. base: becomes the name without the component.
 int ComponentOf(const std::string& name, std::string& base)
 {
   const std::size_t n = name.size();
@@ -206,8 +206,9 @@ std::string ListNames(const Table& table)
 
 using Indices = std::vector<std::size_t>;
 
-/// Lists arrays, by name and columns, in the order of their first columns: an array of one column, or
-/// a vector, if the names of columns tell components.
+/// Lists the arrays of a table without the columns `positions`, each with its name and columns, in the order of
+/// their first columns. Columns whose names tell components make one vector; each other column is an
+/// array.
 std::map<std::size_t, std::pair<std::string, Indices>> FindArrays(
   const Table& table, const Indices& positions = {})
 {

@@ -72,8 +72,8 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Checks the counts in an XML file's elements. A piece has numbers of points and cells; an array has the number of
-/// values for each of `points`, the points of the last piece.
+/// Checks the counts that an XML element, and the elements inside it, declare. The components of an array are counted
+/// once for each of `points`, the number of points of the last piece.
 void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
   for (int i = 0; i < element->GetNumberOfAttributes(); ++i)
@@ -98,7 +98,7 @@ void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* elem
   }
 }
 
-/// Returns the words of a line in small letters; none if it has values, as text or bytes.
+/// Returns the words of a line in small letters; none if the line holds values, as text or as bytes.
 std::vector<std::string> DeclaringWords(View line)
 {
   const auto isPrinted = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\r'; };
@@ -141,7 +141,7 @@ void CheckLegacy(const std::string& file, View text)
   static const Words cells = { "vertices", "lines", "polygons", "triangle_strips", "cells" };
   static const Words counted = { "points", "cell_types", "x_coordinates", "y_coordinates",
     "z_coordinates", "field", "lookup_table" };
-  // An image may have no values.
+  // These counts may exceed the file's size, because an image may have points and cells without values.
   static const Words unlimited = { "point_data", "cell_data", "dimensions" };
   // VTK's reader crashes if other words stand where a type must stand.
   static const Words types = { "bit", "char", "signed_char", "unsigned_char", "short",

@@ -61,8 +61,8 @@ private:
 /// signal ends the program before EndTemporary() is called.
 int MakeTemporary(std::string& name);
 
-/// Lets the file take the place of `target`, or, without one, removes the file. Returns false, and
-/// sets errno, if it cannot take that place; the file is then still there.
+/// Lets the file replace `target` or, if `target` is empty, removes the file. If the file cannot
+/// replace the target, keeps the file, sets errno, and returns false.
 bool EndTemporary(const std::string& name, const std::string& target = "");
 
 #endif

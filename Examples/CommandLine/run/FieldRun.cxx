@@ -80,8 +80,8 @@ vtkSmartPointer<vtkDataSet> MakeLine(const Job& job)
   return line;
 }
 
-/// Makes the points of --line or --slice. A slice spans the bounds of the particles, walls included; finite sides of
-/// --box take their place.
+/// Makes the points of --line or --slice. A slice spans the bounds of the particles, walls included; each finite
+/// side of --box replaces that side of the bounds.
 vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 {
   if (job.Slice.Axis < 0)
@@ -142,8 +142,8 @@ void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 }
 
 /// Adds a row for each point. The first step decides on the columns, and adds their names. A value is
-/// empty if the step lacks the array, or if there is no fluid at the point, unless the array was
-/// read with the points.
+/// empty if the step lacks the array. Where there is no fluid, only arrays that were read with the
+/// points have values.
 void AddPointRows(const Job& job, double time, vtkDataSet* points,
   std::vector<std::pair<std::string, int>>& columns, std::string& text)
 {

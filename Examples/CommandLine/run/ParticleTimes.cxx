@@ -78,9 +78,9 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
-/// Adds the walls of a file to all steps. If the name has %d, each step gets the file of its number.
-/// From a list, each step gets the walls of its time, or, unless `haveTimes`, the next walls. haveTimes:
-/// the steps come from a list, too. Throws std::runtime_error if a step gets no walls.
+/// Adds the walls of a file to all steps. If the name has %d, each step gets the file of its number. If
+/// the file is a list, each step gets the walls of its time or, without `haveTimes`, the next walls in
+/// the list. haveTimes: the steps come from a list, too. Throws std::runtime_error if a step gets no walls.
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {
@@ -413,7 +413,7 @@ bool ParticleTimes::ForEach(const std::vector<std::string>& outputs,
     const std::string kind = moment.Error.empty() ? "warning: " : "";
     for (const std::string& warning : moment.Warnings)
     {
-      // Warnings of dry places count as one warning, even if they name other numbers of places.
+      // Warnings of gauges or sections outside of all fluid count as one warning, even if their numbers differ.
       if (this->Shared.IsFirst() &&
         ++counts[kind +
             (TellsOfDryPlaces(warning) ? "places are outside of all fluid" : warning)] == 1)

@@ -84,8 +84,8 @@ void AddIntegrals(vtkTable* table, const std::string& name, double passed,
   before = now;
 }
 
-/// Returns the iso values of a run, ascending; if the run had no particles, the requested values; one
-/// NaN if there are none.
+/// Returns the iso values of a run, ascending. If the run had no particles, returns the requested
+/// values. If there are no iso values, returns one NaN.
 std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
 {
   std::vector<double> values = NumbersOf(run, "IsoValues");
@@ -102,7 +102,7 @@ std::vector<double> IsoValuesOf(const Job& job, vtkFieldData* run)
   return values.empty() ? std::vector<double>{ NoNumber } : values;
 }
 
-/// Returns the number of the level with this iso value, which may have been rounded to float.
+/// Returns the index of the level nearest to this iso value, which may have been rounded to float.
 std::size_t LevelOf(const std::vector<double>& levels, double iso)
 {
   const auto next = std::min_element(levels.begin(), levels.end(),
@@ -151,7 +151,8 @@ double SumOf(vtkTable* pieces, const char* column, bool areAll, double iso = 0.0
   return sum;
 }
 
-/// Returns the meter's table; shows its progress behind the words `progress`.
+/// Measures the particles with the meter, and returns its table. Shows the progress behind the words
+/// `progress`.
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
   double time, const std::string& progress)
 {

@@ -136,7 +136,8 @@ std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particl
   return without;
 }
 
-/// Lets the filter carry all arrays, or the named ones, if the output has a place for them.
+/// Tells the filter which arrays to interpolate: all, or those of --attributes, but none that the
+/// surface's file could not hold.
 void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   const std::vector<std::string>& asked = job.AttributeNames;

@@ -62,7 +62,8 @@ std::vector<Work> FitNamesForXml(vtkDataSet* data)
   return undo;
 }
 
-/// Every format that is written, with the class that it holds; it holds derived classes, too.
+/// The formats that are written, each with the class of the data sets that it holds. Each format also
+/// holds derived classes.
 const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" },
   { ".vtr", "vtkRectilinearGrid" }, { ".vts", "vtkStructuredGrid" }, { ".vtp", "vtkPolyData" },
   { ".vtu", "vtkUnstructuredGrid" }, { ".vtk", "vtkDataSet" } };

@@ -252,7 +252,8 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   {
     AddColumns(columns, surface->GetPoints()->GetData(), "", "", { "X", "Y", "Z" });
   }
-  // Vectors come first, because their columns' names are made of the arrays' names.
+  // Vectors come first, so that v:0 names a component of v, even if an array of one component has the
+  // name v:0.
   for (const bool isVector : { true, false })
   {
     for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
@@ -285,8 +286,9 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
     });
 }
 
-/// Writes the element of a list of pieces that describes their arrays, as VTK's writers do: it names
-/// arrays with a role, such as the normals. VTK's names of types have the number of bits.
+/// Writes the element of a .pvtp file that describes the arrays of the pieces, as VTK's writers do. The
+/// element names the arrays that have a role, such as the normals. VTK's name of a type has the number
+/// of bits, as in Float32.
 void Describe(std::ostream& text, const std::string& element, vtkDataSetAttributes* arrays)
 {
   text << "    <" << element;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The group "In Use" of a filter's panel, folded at first: shows the information properties of the
- * group, which ParaView itself leaves out, as they were after the last update. A group needs
- * another property, too: ParaView creates the group's widget when it comes to this property.
+ * group, which ParaView itself leaves out, as they were after the last update. The
+ * group also needs a property of another kind: ParaView creates the group's widget there.
  *
  * As soon as something is changed on the panel, before Apply, the group shows what the next update
  * would find (the properties that begin with Next, if the filter has them). The list of iso values

@@ -22,7 +22,8 @@ def tank(count, ratio=1.28):
     """Makes a wavy tank with a free surface. ratio: h / spacing; 1.28 gives 70 neighbours inside 2 h, 1.814 gives 200.
 
     A jittered lattice fills a tank of 3 x 1.5 m up to the free surface at z = 0.55 m + waves. z points up. Arrays:
-    SmoothingLength (constant), Density (1000), Mass, Pressure (hydrostatic, Pa), Swirl (smooth, -1.5 .. 1.5; iso 0 is a gyroid-like surface through the whole tank).
+    SmoothingLength (constant), Density (1000), Mass, Pressure (hydrostatic, Pa), Swirl (smooth, -1.5 .. 1.5; iso 0 is a
+    gyroid-like surface through the whole tank).
     """
     random = np.random.default_rng(477)
     dx = (3 * 1.5 * 0.55 / count) ** (1 / 3)
@@ -167,7 +168,8 @@ def splash(count, ratio=1.3, time=0.1):
     """Makes a crown that rises from a pool and falls apart into drops. ratio: h / spacing.
 
     z points up; lengths are in metres. The sheet of the crown is thrown up at time 0 along a ring of radius 0.3, and each of
-    its particles flies freely. With --steps the steps are 0.02 s apart. Arrays: SmoothingLength (constant), Density (1000), Mass, Velocity, Id.
+    its particles flies freely. With --steps the steps are 0.02 s apart. Arrays: SmoothingLength (constant),
+    Density (1000), Mass, Velocity, Id.
     """
     radius, depth, layers, fingers = 0.8, 0.15, 3, 14
     dx = (math.pi * radius ** 2 * depth / (0.8 * count)) ** (1 / 3)

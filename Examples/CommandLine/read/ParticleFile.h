@@ -68,8 +68,8 @@ struct ParticleSets
     false; ///< the files are parts of one set, which may hold copies of other parts' particles
 };
 
-/// Reads the part of process `rank` of `count`: its share of the files, and of the pieces that they
-/// list, in order.
+/// Reads the files that belong to process `rank` of `count`. The processes share the files, and the
+/// pieces that files list, in order.
 ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
 /// Joins the sets to one, with the arrays that all of them have; there may be no particles. Leaves out

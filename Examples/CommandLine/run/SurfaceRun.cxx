@@ -80,7 +80,8 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   }
 }
 
-/// Returns the particles with the factors of --widen or --smooth, see vtkMarchingCorrectors::Widen().
+/// Returns the particles with the arrays of vtkMarchingCorrectors::Widen(), such as the smoothing
+/// lengths that --widen or --smooth make.
 vtkSmartPointer<vtkPolyData> Widen(const Job& job, vtkPointSet* particles)
 {
   auto widened = vtkSmartPointer<vtkPolyData>::New();

@@ -287,9 +287,10 @@ public:
   vtkSPHFlagMacro(Smooth, 0);
 
   /**
-   * Above 1, each particle's smoothing length is multiplied by a factor of at most this, such that
-   * the particle stays inside the free surface: flat water becomes flat, drops, threads and sheets
-   * stay. The array Widening is the factor. From 1 (off, the default) to 4; 2 is usual.
+   * If above 1, each particle's smoothing length is multiplied by a factor. The factor is at most
+   * this value, and such that the particle stays inside the free surface: flat water becomes flat;
+   * drops, threads and sheets stay. The array Widening is the factor. From 1 (off, the default) to
+   * 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double, 1.0);
 
@@ -305,8 +306,8 @@ public:
 
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by
-   * default. Off keeps the triangles beyond, except where NodeThreshold discards cells. The free
-   * surface is not trimmed.
+   * default. Off also keeps the triangles beyond these ends, except where NodeThreshold discards
+   * cells. The free surface is not trimmed.
    */
   vtkSPHFlagMacro(Trim, 1);
 
@@ -402,11 +403,12 @@ public:
 
   ///@{
   /**
-   * Values that the last update used, for a panel; of composite data, for the last block. Empty,
-   * or 0, if nothing was drawn. The range is that of the contoured scalar at the fluid particles.
-   * IsoValueArrayName: the point array that says which iso value each point has, if ComputeScalars
-   * is on. SurfaceMeasures: the area and, if the surface is closed, the volume, in words; of lines,
-   * length and area. EstimatedCells: about how many cubes of the virtual grid the fluid fills.
+   * Values that the last update used, to be shown in a panel. If blocks are APART, they are the
+   * last block's. They are empty, or 0, if nothing was drawn. FluidScalarRange: the range of the
+   * contoured scalar at the fluid particles. IsoValueArrayName: the point array that says which iso
+   * value each point has, if ComputeScalars is on. SurfaceMeasures: the area and, if the surface is
+   * closed, the volume, in words; of lines, length and area. EstimatedCells: about how many cubes
+   * of the virtual grid the fluid fills.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkSPHToldMacro(UsedIsoValues);

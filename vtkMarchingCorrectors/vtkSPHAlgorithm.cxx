@@ -176,7 +176,7 @@ bool vtkSPHAlgorithm::IsAborted()
 #endif
 }
 
-// Superclasses would report an error for a second array that was never asked for.
+// Returns an empty request if no array was chosen for `index`; the superclass would report an error.
 vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
 {
   vtkSPHRequest request;

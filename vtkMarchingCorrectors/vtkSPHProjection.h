@@ -18,7 +18,7 @@
  * of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction
  * matrix. It shows the Box with UseBox, else the period, or all that particles reach.
  *
- * Blocks of composite data are one set of particles, always. If the controller has several
+ * Blocks of composite data always are one set of particles. If the controller has several
  * processes, each has some of the particles, and each gets the part of the image that is asked for,
  * the same to the last bit as from one process.
  *

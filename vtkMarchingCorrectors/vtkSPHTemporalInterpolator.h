@@ -91,7 +91,8 @@ public:
   ///@{
   /**
    * The particles' motion between the last two steps, divided by the motion that their velocities
-   * give, if a warning tells of it; else 0. A second time between the same two steps makes it 0.
+   * give, if a warning tells of it; else 0. A further update between the same two steps sets it to
+   * 0.
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);

@@ -123,9 +123,9 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 
 /**
  * Returns, for each block with points, whether it is a wall. If `fluidArray` chooses blocks as
- * fluid, all other blocks are walls, else the blocks whose names tell of walls. Returns an empty
- * list if no block is a wall, or if all blocks are walls. Here blocks without points are counted,
- * too, because a block may have its points on another process.
+ * fluid, all other blocks are walls; else blocks are walls if their names tell of walls. Returns an
+ * empty list if no block is a wall, or if all blocks are walls. Here blocks without points are
+ * counted, too, because a block may have its points on another process.
  */
 std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
 {

@@ -6,7 +6,8 @@
  * A shared run in ten points:
  *  1. Each rank comes with any particles, and drops particles that are marked as copies of another
  *     rank's; all agree on one list of arrays (vtkSPHRanksParticles.h).
- *  2. The core measures the globals, over the particles of all ranks (mcor_measure_globals).
+ *  2. The core measures the particles of all ranks: their range, the cube size, and so on. The
+ *     results are called the globals (mcor_measure_globals).
  *  3. All ranks build the same k-d tree over samples of the work, so each owns a box of space
  *     (vtkSPHRanksSpace.h).
  *  4. A particle is sent to each rank whose box is reached by the particle's support, or by an
@@ -21,7 +22,7 @@
  *     surface by their keys; each rank sorts a range of the keys
  *     (vtkMarchingCorrectorsRanks.cxx).
  *  9. The first rank does what needs a whole surface. For pieces or a file it gets all tuples, and
- *     puts them in the order of these numbers (vtkSPHGatherTuples). For lines it gets all
+ *     puts them in the order of their numbers (vtkSPHGatherTuples). For lines it gets all
  *     particles, and makes all lines.
  * 10. No rank returns while another rank waits for it: all ranks first agree on any problem.
  *

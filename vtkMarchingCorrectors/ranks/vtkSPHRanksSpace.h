@@ -106,7 +106,7 @@ private:
 
 /**
  * Returns the work of each of this rank's particles: 1, or 0 if the surface does not depend on the
- * particle (a solid, if solids are not used), and a share of the surface's cost if a surface is
+ * particle (a solid, if solids are not used); plus a share of the surface's cost if a surface is
  * expected near the particle. A surface is expected in a cell of a coarse grid if values in or
  * around the cell are on both sides of an iso value, or, for a free surface, if a cell beside it
  * has far fewer particles. The number of cells does not grow with the particles. The result is the

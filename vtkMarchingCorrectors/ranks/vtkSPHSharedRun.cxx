@@ -199,7 +199,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   const bool good = this->Measure(particles, true);
   core.estimate_smoothing_length = core.smoothing_length_is_support_radius = 0;
   core.smoothing_length = {};
-  // The estimate then counts as if the user had given it.
+  // From now on the estimate counts as if the user had given it.
   core.smoothing_length.constant = this->Globals.measured.h_estimate;
   return good;
 }

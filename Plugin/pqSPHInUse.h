@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The group "In Use" of a filter's panel, folded at first: shows the information properties of the
- * group, which ParaView itself leaves out, as they were after the last update. The
- * group also needs a property of another kind: ParaView creates the group's widget there.
+ * group, which ParaView itself leaves out, as they were after the last update. The group
+ * must also have a property of another kind, because ParaView creates the group's widget when it comes
+ * to such a property.
  *
  * As soon as something is changed on the panel, before Apply, the group shows what the next update
  * would find (the properties that begin with Next, if the filter has them). The list of iso values

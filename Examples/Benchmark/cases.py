@@ -412,8 +412,8 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns the mean number of copies of a rank or, with `most`, the largest number. depth: of the shells. If a side is cut into p
-        parts, a part has a neighbour on either side with probability 1 - 1/p."""
+        """Returns the mean number of copies of a rank or, with `most`, the largest number. depth: how deep the shells are. If a
+        side is cut into p parts, a part has a neighbour on either side with probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))

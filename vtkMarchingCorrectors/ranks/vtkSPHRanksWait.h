@@ -26,8 +26,8 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);
 
 /**
- * If this process has no points, gives its particles or surface the same arrays as on the other
- * processes, without values. Collective.
+ * If this process has no points, gives its particles or surface the arrays that all processes with
+ * points have, without values. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
   vtkMultiProcessController* controller, vtkPolyData* points);

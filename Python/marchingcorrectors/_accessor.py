@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""PyVista's particles.sph, which PyVista finds by the package's entry point."""
+"""The accessor `sph` of PyVista's data sets (particles.sph.isosurface(...)), which PyVista finds by the package's entry point."""
 from __future__ import annotations
 
 from collections.abc import Mapping

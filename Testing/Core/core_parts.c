@@ -119,8 +119,8 @@ static void check_points(const mcor_surface* s)
   }
 }
 
-/* Checks that points' keys ascend and differ, and that triangles' keys never descend. That boxes have the same keys as
- * the whole surface is checked where their triangles are compared. */
+/* Checks that points' keys ascend and differ, and that triangles' keys never descend. Whether boxes have
+ * the keys of the whole surface is checked where their triangles are compared. */
 static void check_keys(const mcor_surface* s)
 {
   for (int64_t i = 1; s->point_keys && i < s->point_count; ++i)

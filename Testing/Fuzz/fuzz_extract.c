@@ -311,7 +311,7 @@ static void fuzz_compare(const fuzz_call* call)
   mcor_free_surface(&fresh);
 }
 
-/* Makes a call that must fail, with the versions of `call`. */
+/* Makes a call that must fail, with the same version numbers of arrays as `call`, which must not reuse what it leaves. */
 static void fuzz_fail_first(const fuzz_call* call)
 {
   fuzz_call failing = *call;

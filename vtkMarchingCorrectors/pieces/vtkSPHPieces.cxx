@@ -352,7 +352,8 @@ void vtkSPHPieces::MoveHome()
   }
 }
 
-// A piece without a volume, such as a layer over the whole period, is the parent of cavities in it.
+// Finds the parent of each cavity: the piece that encloses it. A cavity in a piece without a volume,
+// such as a layer over the whole period, has this piece as its parent.
 void vtkSPHPieces::FindParents(double isoValue)
 {
   std::vector<Triple> places;

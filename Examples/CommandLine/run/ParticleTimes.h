@@ -85,9 +85,9 @@ private:
 /// Whether a warning tells of gauges or sections outside of all fluid.
 bool TellsOfDryPlaces(const std::string& warning);
 
-/// Makes a table, some rows for each time, which is written as it grows. Returns false if a step
-/// failed. what: what was measured, for the message at the end. addRows() adds a moment's rows to
-/// the text, which only the first process needs to have. finish() returns more text for the message.
+/// Writes a table that grows with each time. Returns false if a step failed. addRows() appends a
+/// moment's rows to the text; only the first process' text is written. The message at the end names
+/// `what`, then what finish() returns.
 bool MakeTable(Sharing& sharing, const std::string& what,
   const std::function<void(ParticleTimes::Moment& moment, std::string& text)>& addRows,
   const std::function<std::string()>& finish);

@@ -128,8 +128,8 @@ static void given_levels(void** state)
   mcor_free_globals(&globals);
 }
 
-/* Cuts through cubes of high levels, for which particles at a distance of many small cubes matter.
- * */
+/* Checks boxes whose sides cut large cubes. Such a box needs particles that are many small cubes away
+ * from it. */
 static void cuts_through_large_cubes(void** state)
 {
   static const double half = 0.5;

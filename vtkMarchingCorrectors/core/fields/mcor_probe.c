@@ -158,8 +158,9 @@ void mcor_release_probe(mcor_probe_run* run)
 
 /* ---- evaluation ---- */
 
-/* Writes component c of the attributes on the device, and its gradient, at point i of the batch,
- * which is point `to` of the caller. weight, slope: the weight sum at the point, and its gradient.
+/* Writes a component of an attribute, and its gradient, to the caller's arrays. c: the component's
+ * number on the device. i, to: the point's number in the batch, and in the caller's arrays. weight,
+ * slope: the weight sum at the point, and its gradient.
  * The component's scale is a power of 2, so dividing by the scale is exact. */
 static void mcor_put_component(
   const mcor_probe_run* run, int64_t i, int64_t to, int c, double weight, const double slope[3])

@@ -90,8 +90,8 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-/* Adds the particles of a chunk to the counts and distances of the watched particles. low, high:
- * the bounds of the chunk's positions. */
+/* Counts, for each watched particle, the neighbours in a chunk, and updates its distances to other
+ * particles. low, high: the bounds of the chunk's positions. */
 static void mcor_watch_positions(
   mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {

@@ -35,8 +35,8 @@ mcor_status mcor_find_plane(
 /* Turns the copies *flat into the plane. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Turns positions into the plane: *turned, with the data *flat, which the caller frees. If
- * are_points, positions may lie off the plane and then become NaN. */
+/* Turns positions into the plane. *turned becomes an array of the values *flat, which the caller
+ * frees. are_points: the positions are no particles, so those off the plane become NaN. */
 mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* positions,
   int64_t count, bool are_points, mcor_array* turned, double** flat);
 /* Turns the sides of a box. Across the plane, the box becomes infinite if it contains the plane,

@@ -43,14 +43,15 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
   mcor_mesh* mesh = &context->mesh;
   const int vertices = mesh->vertex_count;
   const size_t bytes = ((size_t)vertices + 1) * sizeof(cl_int);
-  MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, bytes));
   if (!all)
   {
+    MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, bytes));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, 3 * (size_t)mesh->triangle_count,
       MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
     return mcor_scan(context, &mesh->scanned, vertices, count);
   }
   void* scanned;
+  MCOR_TRY(mcor_reserve(context, &mesh->scanned, bytes));
   MCOR_TRY(mcor_map(context, &mesh->scanned, bytes, true, &scanned));
   for (cl_int v = 0; v <= vertices; ++v)
   {
@@ -419,7 +420,10 @@ mcor_status mcor_append_output(
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_number_vertices(context, all, &count);
   const int mapped = count > 0 ? (int)(sizeof views / sizeof *views) : 0;
-  MCOR_THEN(status, mapped > 0 ? mcor_evaluate_outputs(context) : MCOR_OK);
+  if (mapped > 0)
+  {
+    MCOR_THEN(status, mcor_evaluate_outputs(context));
+  }
   MCOR_THEN(status, mcor_map_all(context, views, mapped));
   MCOR_THEN(status, mcor_deliver(&d, input, count));
   status = mcor_unmap_all(context, views, mapped, status);

@@ -212,6 +212,7 @@ static void test_fluid(void** state)
                    type = { "Type", MCOR_ELEMENT_FLOAT64, 1, 9, nine, { 0, 0 } };
   for (int one = 0; one < 2; ++one) /* neither many different values nor one value tell types */
   {
+    mcor_free_found(&found);
     assert_int_equal(mcor_find_input(&request, &place, &type, 1, NULL, &found), MCOR_OK);
     CORE_CHECK(!found.unused_type.text, one, found.unused_type.text);
     for (int i = 0; i < 9; ++i)

@@ -132,6 +132,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
    * change nothing. */
   input = core_input(&set);
   const int64_t part = count / 3;
+  memset(some, 0, sizeof some);
   find_lengths(&input, &options, part, some);
   assert_memory_equal(some, lengths, (size_t)part * sizeof *some);
   assert_true(some[part] == 0);

@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define FUZZ_POINTS 24
 #define FUZZ_LINES 4

@@ -17,7 +17,6 @@
 #include "vtkSPHSay.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iostream>

@@ -16,7 +16,6 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
-#include <utility>
 
 #include <sys/resource.h>
 

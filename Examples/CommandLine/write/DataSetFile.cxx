@@ -20,7 +20,6 @@
 #include "vtkVariant.h"
 #include "vtkXMLDataObjectWriter.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <initializer_list>

@@ -418,7 +418,10 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
     " is one more than the " + std::to_string(step.Count) +
       " particles that the step says it has; correct that number");
-  table = table.empty() ? NumberedColumns(3) : table;
+  if (table.empty())
+  {
+    table = NumberedColumns(3);
+  }
   const std::vector<std::size_t> positions = PositionsOf(file, step);
   const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(file, table, positions);
   const std::vector<double> period = PeriodOf(step);

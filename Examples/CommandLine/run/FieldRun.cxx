@@ -125,16 +125,16 @@ void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 {
   const vtkBoundingBox box(job.Surface->GetBox());
   const bool isAsked = job.Has("--probe") && job.Surface->GetUseBox();
-  for (vtkIdType i = 0; isAsked && i < result->GetNumberOfPoints(); ++i)
+  for (vtkAbstractArray* each : ArraysOf(isAsked ? result->GetPointData() : nullptr))
   {
-    const double* x = result->GetPoint(i);
-    const bool isIn = box.ContainsPoint(x);
-    for (vtkAbstractArray* each : ArraysOf(result->GetPointData()))
+    auto* array = vtkDataArray::SafeDownCast(each);
+    const bool isMade = array && !points->GetPointData()->HasArray(array->GetName());
+    const std::vector<double> zeros(
+      static_cast<std::size_t>(isMade ? array->GetNumberOfComponents() : 0));
+    for (vtkIdType i = 0; isMade && i < array->GetNumberOfTuples(); ++i)
     {
-      auto* array = vtkDataArray::SafeDownCast(each);
-      if (!isIn && array && !points->GetPointData()->HasArray(array->GetName()))
+      if (!box.ContainsPoint(result->GetPoint(i)))
       {
-        const std::vector<double> zeros(static_cast<std::size_t>(array->GetNumberOfComponents()));
         array->SetTuple(i, zeros.data());
       }
     }

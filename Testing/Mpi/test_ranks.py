@@ -399,8 +399,9 @@ def check_sent():
 
 def check_pieces():
     """Pieces of a surface around fluid and walls count the fluid, which is found over ranks as by one process."""
-    counts = []
-    for own, controller in (make_particles(DAM), None), (take_part(make_particles(DAM), "scattered at random"), CONTROLLER):
+    particles, counts = make_particles(DAM), []
+    alone = [(particles, None)] if RANK == 0 else []
+    for own, controller in [*alone, (take_part(particles, "scattered at random"), CONTROLLER)]:
         pieces = vtkSPHComponents()
         pieces.SetController(controller)
         pieces.SetDetectFluid(1)

@@ -13,7 +13,6 @@
 #include "vtkSPHSay.h"
 #include "vtkTypeInt64Array.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>

@@ -29,8 +29,8 @@ def print_table(title, columns, rows):
 
 
 def walls():
-    """Prints errors of fluxes in a channel between walls of three layers at y = 0 and y = 12, in which the fluid moves with (1, 1, 0), and
-    errors of gauges in a tank with a floor."""
+    """Prints errors of fluxes in a channel: its walls at y = 0 and y = 12 have three layers, and the fluid moves with (1, 1, 0).
+    Also prints errors of gauges in a tank with a floor."""
     x = lattice((-8, 8), (-3, 15), (-8, 8))
     solid = (x[:, 1] < 0) | (x[:, 1] > 12)
     in_place = x.copy()  # Here the layer beside each wall stays half a spacing away from the wall.

@@ -52,8 +52,8 @@ MASK = (1 << 21) - 1
 
 
 def split_bricks(positions, lengths, cube):
-    """Returns a list with one entry for each level: the keys (one number each) of the bricks that smaller bricks replace.
-    The entry of level 0, the smallest bricks, is empty."""
+    """Returns a list with one entry for each level: the keys (one number each) of the bricks (4 x 4 x 4 cubes) that smaller
+    bricks replace. The entry of level 0, the smallest bricks, is empty."""
     sides = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     level = np.floor(np.log2(lengths / lengths.min() * (1 + 1e-12))).astype(int)
     split = [np.empty(0, np.int64)]
@@ -232,10 +232,10 @@ class Watch:
 
 
 def cancel(benchmark):
-    """Measures how long a run goes on after it is cancelled. A run stops after its next report of progress. Prints for
-    each kind of run, with all kernels compiled: the longest time without a report, by the clock and in processor seconds
-    of all threads, and the phase that ran (the least over the runs); and the longest time from a report that cancels a run
-    to the end of the run, over 8 places in a run."""
+    """Measures how long a run goes on after it is cancelled. A run stops at its next report of progress. All kernels are
+    compiled. For each kind of run, prints the longest time without a report, by the clock and in processor seconds of all
+    threads, and the phase in which it began; this time is the least over several runs. Then prints how long a run went on after
+    the report that cancelled it: the longest time over 8 such reports."""
     from marchingcorrectors import vtkMarchingCorrectors
     out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
     size, side = (64, 32) if benchmark.quick else (512, 256)
@@ -264,8 +264,8 @@ def cancel(benchmark):
 
 
 def project(benchmark):
-    """Compares column densities of Evrard's sphere (density 1 / r, h of 1.2 spacings, boxes of 2.6) by project() of
-    Python and by sarracen's code for the processor. sarracen's exact mode gives means over pixels, as project() does;
+    """Compares column densities of Evrard's sphere (density 1 / r, h of 1.2 spacings, in a box with edges of 2.6)
+    by project() of Python and by sarracen's code for the processor. sarracen's exact mode gives means over pixels, as project() does;
     otherwise sarracen evaluates kernels at the centres of pixels, or of 4 x 4 finer pixels, which are averaged. An error is the
     largest difference from project(), over the greatest value; the exact mode's error tells how closely both programs agree.
     Seconds are by the clock and of processors."""
@@ -332,8 +332,8 @@ class Walls:
 
 
 def add_walls(data, path):
-    """Writes the particles with a layer of solids around their box. The least smoothing length is the
-    distance of the layer from the box and of a solid from the next; its cube is the volume of a solid."""
+    """Writes the particles with a layer of solids around their box. The least smoothing length is the distance between the
+    layer and the box, and between neighbouring solids. A solid's volume is this length cubed."""
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing
@@ -355,8 +355,8 @@ WALL_CHOICES = {
 
 
 def walls(benchmark):
-    """Measures where surfaces end at walls, for each choice of --solids: the distance of their border from the first
-    layer of wall particles, in smoothing lengths (below 0: behind the layer), and the share of points behind the layer.
+    """Measures where surfaces end at walls, for each choice of --solids: the distance of the surface's border from the
+    first layer of wall particles, in smoothing lengths (below 0: behind the layer), and the share of points behind the layer.
     A file without solids gets a layer of solids."""
     out, near = benchmark.report, 1.5  # A border point this near to a wall, in smoothing lengths, ends there.
     edges = vtk.vtkFeatureEdges()  # These edges have only one triangle.
@@ -426,9 +426,9 @@ class Model:
 
 
 def ranks(benchmark):
-    """Writes what it costs if processes share a surface: particles that a rank owns, copies of other ranks' particles, bytes
-    sent, nodes evaluated. Fits a model to these figures, and writes what the model says of larger data. The bytes are
-    those of the copies, and of the particles that travel: 1 - 1 / ranks of all particles."""
+    """Prints what sharing a surface among processes costs: the particles that a rank owns, copies of other ranks' particles,
+    bytes sent, nodes evaluated. Fits a model to these figures, and prints what the model says of larger data. Bytes are sent
+    for the copies, and for the particles that go to their owners: 1 - 1 / ranks of all particles."""
     out, runs, options = benchmark.report, [], benchmark.more or ["--free-surface"]
     for count in benchmark.sizes:
         path = benchmark.sets.get("tank", count)
@@ -455,7 +455,7 @@ def ranks(benchmark):
                      f"{model.copies(depth):.0f}", f"{sum(found['rank_bytes_sent']) / 1e6:.1f}",
                      excess(found["rank_nodes_evaluated"])])
     out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean"], rows)
-    # The first rank reads the file, so all copies are sent, and all particles that the first rank does not own.
+    # The first rank reads the file. It sends all particles that other ranks own; all copies are sent, too.
     sent = sum(sum(found["rank_bytes_sent"]) for _, found in runs) / sum(
         sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found in runs)
     nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found in runs) /

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Tells whether CUDA's memory can become an OpenCL buffer of the same card without a copy: CUDA exports memory as a file descriptor,
-cl_khr_external_memory_opaque_fd imports it. Decides whether arrays of CuPy or PyTorch could reach the kernels by one copy on the card. Its second
-half has not run on a card yet. It takes CUDA's first card. Needs both drivers, and Python alone.
+cl_khr_external_memory_opaque_fd imports it. If so, arrays of CuPy or PyTorch could reach the kernels by one copy on the card. The code that follows
+find_device() has not run on a card yet. The script takes CUDA's first card. It needs both drivers, and Python without packages.
 
 Status 0: yes; 1: no, the last line says why.
 """
@@ -56,7 +56,7 @@ def make(opencl, name, *arguments):
 
 
 def find_device(opencl):
-    """Prints, for each device, whether it imports memory by file descriptors. Returns the first device that does."""
+    """Prints, for each device, whether it can import memory from file descriptors. Returns the first device that does."""
     found, platforms, devices, count = None, (c_void_p * 16)(), (c_void_p * 16)(), c_uint()
     opencl.clGetPlatformIDs(16, platforms, byref(count))
     for platform in platforms[:count.value]:

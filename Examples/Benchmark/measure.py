@@ -44,13 +44,13 @@ SETS = {
 
 
 def count_of(text):
-    """Turns 670k into 670000, and 3M into 3000000."""
+    """Turns the text 670k into 670000, and 3M into 3000000."""
     factor = {"k": 1000, "m": 1000000}.get(text[-1:].lower(), 1)
     return round(float(text[:-1] if factor > 1 else text) * factor)
 
 
 def text_of(count):
-    """Turns 670000 into 670k, and 3000000 into 3M."""
+    """Turns 670000 into the text 670k, and 3000000 into 3M."""
     for unit, letter in ((1000000, "M"), (1000, "k")):
         if count >= unit:
             return f"{count / unit:g}{letter}"
@@ -77,8 +77,8 @@ class Sets:
         return path
 
     def get_with_one_array(self, kind, count, array):
-        """Writes these particles with one array alone. Returns the file's path, and options that replace the arrays of smoothing
-        length, mass and density. Raises ValueError if one of these three differs from particle to particle."""
+        """Writes a set's particles with no array but `array`. Returns the file's path, and options that replace the arrays of
+        smoothing length, mass and density. Raises ValueError if one of these three differs from particle to particle."""
         whole = self.get(kind, count)
         path = whole.with_name(f"{whole.stem}-{array}.vtp")
         particles = read(whole)
@@ -136,8 +136,8 @@ class Program:
 
     def measure(self, path, options):
         """Returns medians of the timed runs. One process extracts the surface `runs` + 1 times, each time from scratch except for the
-        OpenCL program. The first extraction, which loads the OpenCL program, is given apart. Another process compiles the OpenCL program
-        before, because the compiler takes memory."""
+        OpenCL program. The first extraction loads the OpenCL program; its time is given as "first". An earlier process compiles
+        this program, so that the compiler's memory is not counted."""
         print(f"marching-correctors {path.name} {' '.join(map(str, options))}", file=sys.stderr)
         self.start(path, options)
         found = self.start(path, options, self.runs + 1)[0]

@@ -4,15 +4,15 @@
 
 The paper: B. Schindler, R. Fuchs, J. Waser, R. Peikert: Marching Correctors - Fast and Precise
 Polygonal Isosurfaces of SPH Data, 2011; one core of a Xeon E5430 and a GeForce GTX 295. Its data
-sets are not public; ours have their number of particles, neighbours and kernels, and iso values
-that give surfaces of about the same number of triangles. Field and seeds are the paper's (sum,
-pairs).
+sets are not public. Ours have the same numbers of particles and neighbours, the same kernels, and
+iso values that give about as many triangles. As in the paper, the field is the plain sum (--field
+sum), and seeds come from pairs of particles (--seeds pairs).
 
 What the rows are, in phases of marching-correctors:
 
   grid construction         input (checks, transfer to the device), search grid
   seed cell selection       seeds
-  surface extraction        extraction, correction, trimming, output of a run with --preview; its
+  surface extraction        extraction, correction, trimming, output of a run with --preview; such a run's
                             correction phase evaluates the weights that trimming needs
   s.e. with correction      the same phases of a run without --preview; normals are the gradients
   totals                    seed cell selection and surface extraction, without the grid

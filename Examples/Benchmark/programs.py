@@ -18,7 +18,7 @@ KERNEL = ("-DMCOR_W=mcor_w_cubic -DMCOR_DW=mcor_dw_cubic -DMCOR_DDW=mcor_ddw_cub
 
 
 def list_programs():
-    """Returns {program: (its number for the prelude, its sources)} for the form of the kernels that GPUs run."""
+    """Returns {program: (its value of MCOR_PROGRAM, its source files)} for the form of the kernels that GPUs run."""
     rows = [(source, words.split()) for source, words in
             re.findall(r'^  "(\S+) +([^"]*)"', (FOLDER / "kernels/programs.cmake").read_text(), re.M)]
     words = [word for _, words in rows for word in words]

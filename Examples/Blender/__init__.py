@@ -27,7 +27,7 @@ def to_time(settings, scene, frame):
 
 
 def find_step(settings, scene, frame):
-    """Returns the last step that is not later than the frame, or the first step."""
+    """Returns the last step that is not later than the frame; if all are later, the first one."""
     time, found = to_time(settings, scene, frame), settings.steps[0]
     margin = 1e-4 * settings.speed * scene.render.fps_base / scene.render.fps  # Times in files may have few digits.
     for step in settings.steps:

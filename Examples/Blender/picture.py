@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Renders a splash by Cycles, without and with motion blur: OUT/splash.png, OUT/splash_blurred.png.
+"""Renders a splash with Cycles, without and with motion blur: OUT/splash.png, OUT/splash_blurred.png.
 
     python picture.py EXTENSION.zip OUT      in an environment with bpy (Blender as a module), NumPy and VTK
 """

@@ -31,8 +31,8 @@ using Picture = std::function<std::string(const std::string& file, vtkDataSet* d
 Picture NewPicture(const PictureOptions& options);
 
 /// ReadHdf() returns the points of one step of a .vtkhdf file; ListHdfTimes() returns the times of the steps,
-/// none for a file without steps. VTK's reader is not used for poly data and for steps, because its older
-/// versions know neither. A file is refused if some of its values lie in other files.
+/// none for a file without steps. VTK's reader is not used for poly data and for steps, because old
+/// versions of VTK know neither. A file is refused if some of its values lie in other files.
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
 

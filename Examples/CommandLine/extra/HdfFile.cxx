@@ -146,7 +146,7 @@ public:
 
   /// Reads `count` rows from `first` on, or all rows if `count` is below 0. Returns null if the
   /// array does not hold numbers, or has more than 2 dimensions or 1000 columns. Throws
-  /// std::runtime_error if there is no such array, or not as many rows.
+  /// std::runtime_error if there is no such array, or if it has fewer rows.
   vtkSmartPointer<vtkDataArray> Read(
     const std::string& name, long long first = 0, long long count = -1) const
   {

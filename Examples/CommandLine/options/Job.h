@@ -95,7 +95,7 @@ struct Job
   /// Whether the run makes a film, of surfaces or of images.
   bool IsFilm() const;
 
-  /// The options that were given, with the text behind each. Text() returns "" if there is none.
+  /// The options that were given, with the text behind each. Text() returns "" for other options.
   std::map<std::string, std::string> Given;
   bool Has(const char* option) const { return this->Given.count(option) > 0; }
   std::string Text(const char* option) const

@@ -23,9 +23,8 @@ std::string Printable(const std::string& text);
 /// Returns the text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
 
-/// A function of type mcor_word, see mcor.h. The core's sentences have slots for the words of the
-/// program that uses the core; writes this program's word for a slot, such as --cube-size, to `word`.
-/// Returns 0 if there is no such word.
+/// A function of type mcor_word, see mcor.h. The core's sentences have slots, which each program fills with its own words.
+/// This function writes this program's word for the slot `name`, such as --cube-size, to `word`. It returns 0 if there is none.
 int OptionWord(void* user, const char* name, const char* value, char* word, std::size_t size);
 
 /// Prints an error or a warning as one line on standard error, after the program's name. The

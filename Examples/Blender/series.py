@@ -41,7 +41,7 @@ def list_arrays(particles):
 
 def make_surface(path, number, smoothing_length="", fluid="", scalar="", iso=0.5, smooth=True, cube_size_factor=0.5,
                  least_particles=0, arrays=()):
-    """Returns the surface of step `number` of a file, with the attributes `arrays`, and without pieces of fewer than least_particles particles."""
+    """Returns the surface of step `number` of a file, with the attributes `arrays`. Leaves out pieces of fewer than least_particles particles."""
     global _context
     if _context is None:
         _context = mc.Context()

@@ -22,7 +22,7 @@ using View = std::string_view;
 
 // These functions read files. All throw std::runtime_error with one sentence.
 
-/// Returns the bytes of a file; none if the file cannot be opened. The bytes stay in memory while a copy of the pointer
+/// Returns the bytes of a file; an empty text if the file cannot be opened. The bytes stay in memory while a copy of the pointer
 /// exists.
 using FileBytes = std::shared_ptr<const View>;
 FileBytes BytesOf(const std::string& file);

@@ -94,8 +94,8 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
 /// Returns a hint if --periodic is not given although the data tell a period, else "".
 std::string HintOfPeriod(vtkDataObject* particles);
 
-/// Returns the text of --list-arrays: a line for each array of the particles, and a line for each thing that a run
-/// would find.
+/// Returns the text of --list-arrays: a line for each array of the particles, and a line for each setting that a run
+/// would take from the particles, such as the smoothing length.
 std::string DescribeArrays(vtkPointSet& particles);
 
 #endif

@@ -26,8 +26,8 @@
 namespace
 {
 
-/// All: the signals that people and batch systems send to end a program. Awaited: those that were not
-/// ignored at the start, as nohup ignores hangups.
+/// All: the signals that people and batch systems send to end a program. Awaited: the signals in All
+/// that were not ignored at the start; nohup, for example, starts a program that ignores hangups.
 sigset_t All, Awaited;
 
 void FindAwaited()

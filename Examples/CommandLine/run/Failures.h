@@ -24,8 +24,8 @@ struct KeptMessages
   void Check(const std::string& error = "") const;
 };
 
-/// Returns the messages since they were last emptied. The first call makes all messages come here:
-/// VTK has one window for all objects.
+/// Returns the messages since the list was last emptied. The first call makes VTK send all messages
+/// to this list, because VTK has one output window for all objects.
 KeptMessages& Messages();
 
 /// Must be called before any thread starts. From then on the program prints a sentence if it

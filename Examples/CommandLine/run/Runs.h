@@ -32,7 +32,7 @@ bool MakeSurface(Sharing& sharing);
 /// a step fails, makes the others.
 bool MakeFilm(Sharing& sharing);
 
-/// Measures at each time of the input: the free surface along lines; or what flows through sections, and has flowed
+/// Measures, at each time of the input, the free surface along lines; or the flux through sections, and the fluxes' integrals
 /// since the first time. Writes a table of the steps that did not fail; for a grid of gauges, an image.
 bool MakeMeterTable(Sharing& sharing);
 
@@ -114,7 +114,7 @@ std::string DescribeRun(vtkFieldData* run, bool atLength, bool onlySeconds);
 std::string StatisticsAsJson(const Job& job, const std::vector<Run>& runs,
   const std::vector<std::string>& warnings, double peakResidentBytes);
 
-/// Returns the report of a step of a film. inputs: its files; result: the surface's file or, if `run` is null, why
+/// Returns the report of a step of a film. inputs: the step's files; result: the surface's file or, if `run` is null, why
 /// there is none.
 std::string StepAsJson(double time, const std::vector<std::string>& inputs,
   const std::string& result, vtkFieldData* run, double wallSeconds);

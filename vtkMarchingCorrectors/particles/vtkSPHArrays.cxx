@@ -303,8 +303,8 @@ std::string vtkSPHChooseArray(vtkFieldData* data, const mcor_ranks* ranks)
 
 mcor_array vtkSPHView(vtkDataArray* array)
 {
-  static const double none = 0.0; // an empty array may have a null pointer, and the core reads
-                                  // arrays without data as constants
+  // The core takes an array without data as a constant, but empty VTK arrays may have no data.
+  static const double none = 0.0;
   mcor_array view = {};
   view.type = array->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
   view.components = array->GetNumberOfComponents();

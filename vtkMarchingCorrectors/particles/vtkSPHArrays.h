@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: shows VTK arrays to the core, and makes VTK arrays of its results. */
+/** Private to the module: shows VTK arrays to the core, and makes VTK arrays of the core's results. */
 #ifndef vtkSPHArrays_h
 #define vtkSPHArrays_h
 
@@ -31,7 +31,7 @@ class vtkIdList;
 class vtkPoints;
 class vtkPointSet;
 
-/** Returns the array's name, empty for none. */
+/** Returns the array's name; empty if the array has none, or is null. */
 std::string vtkSPHNameOf(vtkAbstractArray* array);
 
 /** Returns the name, or "" for "(automatic)" and "(none)", which ParaView's lists of arrays show in place of a name. */
@@ -107,7 +107,7 @@ void vtkSPHAddArray(
   vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array);
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
 ///@{
-/** Adds an array with one tuple, the numbers: 64-bit integers if T is an integer type, else doubles. */
+/** Adds an array with the values as its only tuple: as 64-bit integers if T is an integer type, else as doubles. */
 template <typename T>
 void vtkSPHAdd(vtkFieldData* data, const char* name, const std::vector<T>& values)
 {

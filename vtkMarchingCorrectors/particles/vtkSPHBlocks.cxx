@@ -34,10 +34,10 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
 }
 
 /**
- * Joins the arrays of all blocks that are named as `first`, one block after the other. A wall that
- * lacks the array gets the first tuple of `first`. Returns null if a block that is no wall lacks
- * the array, if a wall lacks an array of particle types, or if a block's array of this name has
- * another type or size.
+ * Joins each block's array that has the name of `first`, one block after the other. A wall that
+ * lacks the array gets the first tuple of `first` at each point. Returns null if a block that is no
+ * wall lacks the array, if a wall lacks an array of particle types, or if a block's array of this
+ * name has another type or size.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
@@ -78,8 +78,7 @@ bool TellsOfWalls(const std::string& name)
 struct Leaf
 {
   vtkDataObject* Data; ///< null: the block is empty
-  std::string Name;    ///< a partition without a name takes the name of the partitioned data
-                       ///< set; empty: no name
+  std::string Name;    ///< a partition without a name gets its data set's name; may be empty
   unsigned int Index;
 
   vtkPointSet* Points() const
@@ -124,8 +123,8 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 /**
  * Returns, for each block with points, whether it is a wall. If `fluidArray` chooses blocks as
  * fluid, all other blocks are walls; else blocks are walls if their names tell of walls. Returns an
- * empty list if no block is a wall, or if all blocks are walls. Here blocks without points are
- * counted, too, because a block may have its points on another process.
+ * empty list if no block is a wall, or if all blocks are walls. Blocks without points count in this
+ * decision, because a block may have its points on another process.
  */
 std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
 {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module and the program: the range of a first picture's colours. */
+/** Private to the module and the program: the colour range that a picture has at first. */
 #ifndef vtkSPHColorRange_h
 #define vtkSPHColorRange_h
 

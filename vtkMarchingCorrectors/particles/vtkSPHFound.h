@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the project: finds arrays of particles by their names, and the period in their field
- * data, if the user has chosen none.
+ * Private to the project: if the user has chosen no arrays or no period, finds the particles'
+ * arrays by their names, and the period in the particles' field data.
  */
 #ifndef vtkSPHFound_h
 #define vtkSPHFound_h
@@ -30,8 +30,7 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles
 struct vtkSPHPeriod
 {
   std::vector<double> Period; ///< three lengths or six bounds; empty: no period is told
-  std::string Array;          ///< the array that tells the period or, if there is none, a tilted
-                              ///< cell
+  std::string Array;          ///< the array that tells the period, or else a tilted cell
   bool IsTilted() const { return this->Period.empty() && !this->Array.empty(); }
 };
 

@@ -264,7 +264,7 @@ std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& opti
   return status == MCOR_CANCELLED ? "" : problem;
 }
 
-// Particles that another process sent already have the sums, as the array NameMade(name).
+// Particles from another process come with their sums, in the array NameMade(name).
 vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, double ratio)
 {
   vtkPointData* arrays = this->Points->GetPointData();
@@ -323,7 +323,7 @@ bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
   return mcor_has_free_surface(&core, ranks) != 0;
 }
 
-// The data set's own time counts, too: users change arrays in place, and call only its Modified().
+// The data set's time counts, too: users change arrays in place, and call only the set's Modified().
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
   std::vector<std::uint64_t> particles;

@@ -53,16 +53,17 @@ struct vtkSPHWanted
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
- * Writes the detected fluid and UnusedType into the choice. Writes the array to contour into `first`
- * if `first` is not null and has no name. Collective.
+ * Writes into the choice the detected fluid, or in UnusedType a sentence about an array that seems
+ * to mark fluid but is not used. Writes the array to contour into `first` if `first` is not null and
+ * has no name. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);
 
 /**
- * Lets the core compute, from neighbours, the smoothing lengths (if `ratio` is above 0) or
- * densities of the first `count` particles. Returns why that failed; an empty text if it did not
- * fail, or was cancelled.
+ * Lets the core compute, from neighbours, smoothing lengths or densities of the first `count`
+ * particles. ratio: the NeighborRatio of smoothing lengths; 0 for densities. Returns why the core
+ * failed; an empty text if it did not fail, or was cancelled.
  */
 std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
   std::int64_t count, double* values);
@@ -81,12 +82,12 @@ public:
   vtkSPHParticles(const vtkSPHParticles&) = delete;
   void operator=(const vtkSPHParticles&) = delete;
 
-  /** Finds the wanted arrays. False if one is missing or not usable; Error then says which. */
+  /** Finds the wanted arrays. Returns false if one is missing or not usable; Error says which. */
   bool Collect(const mcor_ranks* ranks = nullptr);
 
   /**
-   * Takes the arrays that vtkMarchingCorrectors::FindWidening() has found. The factors become the
-   * core's last attribute; Interpolated does not list them.
+   * Takes what vtkMarchingCorrectors::FindWidening() has found: factors of the smoothing lengths, and
+   * volumes or null. The factors become the core's last attribute; Interpolated does not list them.
    */
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 

@@ -26,7 +26,7 @@ bool IsVertex(int type)
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX;
 }
 
-/** The list of cells that holds a data set's vertices. A cell has the same number in the cell data. */
+/** The list of cells with a data set's vertices. Tuple i of the cell data belongs to cell i of the list. */
 struct Cells
 {
   vtkCellArray* List = nullptr;

@@ -42,12 +42,12 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 
 /**
  * Merges statistics: sums of counts, the longest seconds, and means over all points (each point is
- * counted by one rank only). Bricks, nodes and evaluations count twice if the ranks on both sides of
- * a seam evaluate them.
+ * counted by one rank only). Bricks, nodes and evaluations count twice where two ranks' boxes meet
+ * and both ranks evaluate them.
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
-  // Global numbers come from the first rank that had work: all such ranks have the same.
+  // Global numbers come from the first rank that had work: all ranks with work have the same ones.
   const auto known = std::find_if(
     parts.begin(), parts.end(), [](const mcor_statistics& part) { return part.cube_size > 0.0; });
   mcor_statistics all = known == parts.end() ? mcor_statistics() : *known;
@@ -90,10 +90,10 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Samples of keys for each rank. With this number, the ranks' ranges of keys differ by about an eighth. */
+/** Samples of keys for each rank. With so many, the numbers of keys that ranks get differ by about an eighth. */
 constexpr std::size_t SamplesPerRank = 64;
 
-/** Returns the keys at which the ranks' ranges of keys end, without the last range. All ranks get the same. */
+/** Returns the end of each rank's range of keys, except the last rank's. All ranks get the same ends. */
 Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 {
   const auto count = static_cast<std::size_t>(ranks.GetCount());

@@ -79,10 +79,10 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller
 }
 
 /**
- * Returns the piece of each point, or of each triangle, of this rank; below 0, it is dropped.
+ * Returns the piece of each point, or of each triangle, of this rank; -1: the piece is left out.
  * pieces: on the first rank, the pieces of all ranks' points or triangles. The other ranks ask the
- * first rank, so that only one rank must hold all pieces. The global ids in `data` become numbers
- * among all points or triangles that stay. Collective.
+ * first rank, so that only one rank must hold all pieces. The global ids in `data` are replaced:
+ * points or triangles whose pieces stay are numbered anew, all others get -1. Collective.
  */
 Ids Return(vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces)
 {
@@ -146,7 +146,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
       fluid->GetPointData()->AddArray(array);
     }
   }
-  // The fluid is found among all particles, so each array that may tell it is needed.
+  // The fluid is found among all particles, so each array that may mark the fluid is needed.
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     const char* name = data->GetArrayName(i);

@@ -4,20 +4,20 @@
  * Private to the module: the processes (ranks) that share one run, and what they tell each other.
  *
  * A shared run in ten points:
- *  1. Each rank comes with any particles, and drops particles that are marked as copies of another
- *     rank's; all agree on one list of arrays (vtkSPHRanksParticles.h).
+ *  1. Each rank begins with some of the particles, without particles that are marked as copies of
+ *     another rank's. All ranks agree on one list of arrays (vtkSPHRanksParticles.h).
  *  2. The core measures the particles of all ranks: their range, the cube size, and so on. The
  *     results are called the globals (mcor_measure_globals).
  *  3. All ranks build the same k-d tree over samples of the work, so each owns a box of space
  *     (vtkSPHRanksSpace.h).
- *  4. A particle is sent to each rank whose box is reached by the particle's support, or by an
- *     image of it. A point is sent to the rank whose box holds the point (vtkSPHSendTuples).
+ *  4. A particle is sent to each rank whose box the particle's support, or an image of the support,
+ *     reaches. A point is sent to the rank whose box holds the point (vtkSPHSendTuples).
  *  5. Each rank calls the core for its box, as one process may for any box; thanks to the globals,
  *     the result is this part of the whole surface, to the last bit.
  *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
  *     callback ends their calls (vtkSPHSharedRun.cxx).
  *  7. Results at points and particles go back to the ranks from which the points and particles
- *     came, by the lists that sent them (vtkSPHReturnTuples).
+ *     came (vtkSPHReturnTuples).
  *  8. A surface stays where it was made. Its points and triangles get their numbers in the whole
  *     surface by their keys; each rank sorts a range of the keys
  *     (vtkMarchingCorrectorsRanks.cxx).
@@ -109,8 +109,8 @@ public:
    */
   void ReduceRanges(double* ranges, int count)
   {
-    const auto negateGreatest = [ranges, count] // negated, the greatest values are the least, so
-                                                // one message is enough
+    // Negated greatest values are least values, so that one Reduce() is enough.
+    const auto negateGreatest = [ranges, count]
     {
       for (int i = 1; i < 2 * count; i += 2)
       {

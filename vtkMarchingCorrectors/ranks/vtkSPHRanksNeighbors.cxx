@@ -228,8 +228,8 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   arrays = vtkSPHSendTuples(ranks, arrays, to, &from);
   const vtkIdType own = arrays[0]->GetNumberOfTuples();
 
-  // Computes sums for the first `count` particles, with all as neighbours. Returns false if a rank
-  // failed.
+  // Computes sums for the first `count` particles; all particles are neighbours. Returns false if a
+  // rank failed.
   const auto sum = [&](vtkIdType count, double* sums)
   {
     this->CallAside(

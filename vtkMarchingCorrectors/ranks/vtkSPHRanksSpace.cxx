@@ -29,7 +29,7 @@ constexpr double CellLengths = 2.0;
 /** The cost of a cube with surface, in costs of a particle. */
 constexpr double CubeWork = 40.0;
 
-/** A cell has far fewer particles than another if it has less than 1 / FarFewer of their number. */
+/** A cell has far fewer particles than another if it has less than 1 / FarFewer of the other's number. */
 constexpr std::int64_t FarFewer = 4;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
@@ -81,8 +81,8 @@ void vtkSPHRanksSpace::Enter(double at[3]) const
   }
 }
 
-// Returns how far a particle reaches: its scaled and widened support, and, for a large particle,
-// the margin that it needs beyond the least margin. Lengths before widening decide on the margin.
+// Returns how far a particle reaches: its scaled and widened support and, for a large particle, the
+// excess of its margin over the least margin. Smoothing lengths before widening decide on the margin.
 double vtkSPHRanksSpace::ReachOf(const mcor_input& input, std::int64_t i) const
 {
   const mcor_options& options = *this->Options;

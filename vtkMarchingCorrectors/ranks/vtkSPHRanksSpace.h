@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: which rank owns which part of space, and which particles it needs. */
+/** Private to the module: which part of space each rank owns, and which particles each rank needs. */
 #ifndef vtkSPHRanksSpace_h
 #define vtkSPHRanksSpace_h
 
@@ -106,8 +106,8 @@ private:
 
 /**
  * Returns the work of each of this rank's particles: 1, or 0 if the surface does not depend on the
- * particle (a solid, if solids are not used); plus a share of the surface's cost if a surface is
- * expected near the particle. A surface is expected in a cell of a coarse grid if values in or
+ * particle (a solid, if solids are not used). If a surface is expected near the particle, a share of
+ * the surface's cost is added. A surface is expected in a cell of a coarse grid if values in or
  * around the cell are on both sides of an iso value, or, for a free surface, if a cell beside it
  * has far fewer particles. The number of cells does not grow with the particles. The result is the
  * same to the last bit however particles are spread over ranks. Collective.

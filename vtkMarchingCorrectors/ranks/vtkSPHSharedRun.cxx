@@ -204,8 +204,8 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   return good;
 }
 
-// The box ends at the places, or at the particles if these end earlier; along periods it is
-// infinite.
+// Sets the box to the bounds of the places, cut off at the bounds of the particles, with a margin.
+// Along periods the box is infinite.
 void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double high[3])
 {
   const mcor_measure& measured = this->Globals.measured;

@@ -86,8 +86,7 @@ private:
   std::vector<std::uint8_t> Owned;
   vtkSmartPointer<vtkPolyData> Places;        ///< this rank's points with finite coordinates
   std::vector<vtkSPHRanksPlace> PlacesOfWork; ///< the work at these points
-  std::vector<vtkIdType> Numbers;             ///< numbers of Places, or of the particles, in the
-                                              ///< data that this rank was given
+  std::vector<vtkIdType> Numbers;             ///< index of each place or particle in the given data
   std::vector<vtkIdType> From;                ///< how many points or particles came from each rank
 };
 VTK_ABI_NAMESPACE_END

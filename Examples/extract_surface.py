@@ -47,7 +47,7 @@ def main(particles, free_surface, speed):
     surface.SetValue(0, 1.0)  # m/s
     mesh = write(surface, speed)
 
-    # Every other point array was interpolated to the surface; the statistics are the filter's.
+    # Every other point array was interpolated to the surface. The filter has the statistics.
     pressure = mesh.GetPointData().GetArray("Pressure").GetRange()
     cells = surface.GetRunStatistics().GetArray("CellsUsed").GetValue(0)
     print(f"pressure on it: {pressure[0]:.0f} .. {pressure[1]:.0f} Pa; {cells:.0f} cells used")

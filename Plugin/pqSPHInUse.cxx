@@ -440,9 +440,9 @@ void pqSPHInUse::showValues()
   this->showRows();
 }
 
-// ParaView chooses colours when it first shows something. The panel chooses anew if nothing was
-// visible before (after an error, or with an iso value outside of the range), or if another array
-// is the best one now, until a person takes another colour.
+// ParaView chooses colours when it first shows something. Until a person takes another colour, the
+// panel chooses anew if nothing was visible before (after an error, or with an iso value outside of
+// the range), or if another array is the best one now.
 void pqSPHInUse::colourLate()
 {
   pqOutputPort* port = outputOf(this->proxy());
@@ -547,8 +547,8 @@ bool pqSPHInUse::watchColour(pqDataRepresentation* shown)
   return name != std::exchange(this->Coloured[shown], name);
 }
 
-// ParaView's own colour ranges cover all values, so a few drops or corners decide them. If ParaView
-// has taken such a range, or another array, the colours get the range of most of the area.
+// ParaView's own colour range covers all values, so a few drops or corners decide it. If ParaView has
+// taken its own range, or colours by another array, the colours get the range on most of the area.
 void pqSPHInUse::narrowColours()
 {
   SCOPED_UNDO_EXCLUDE();
@@ -590,8 +590,8 @@ void pqSPHInUse::narrowColours()
   }
 }
 
-// Shows what the next Apply would find. A hidden filter with the values that the panel shows, applied
-// or not, finds this. The range that the hidden filter finds is the domain of the list of iso values.
+// Shows what the next Apply would find. For this, a hidden filter gets the values that the panel shows,
+// applied or not. The range that the hidden filter finds is the domain of the list of iso values.
 void pqSPHInUse::lookAhead()
 {
   SCOPED_UNDO_EXCLUDE(); // the user did nothing

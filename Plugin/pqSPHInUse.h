@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The group "In Use" of a filter's panel, folded at first: shows the information properties of the
- * group, which ParaView itself leaves out, as they were after the last update. The group
- * must also have a property of another kind, because ParaView creates the group's widget when it comes
- * to such a property.
+ * The group "In Use" of a filter's panel, folded at first. The group shows what its information
+ * properties were after the last update; ParaView itself leaves out such properties. The group must
+ * also have a property of another kind, because ParaView creates the group's widget when it comes to
+ * such a property.
  *
  * As soon as something is changed on the panel, before Apply, the group shows what the next update
  * would find (the properties that begin with Next, if the filter has them). The list of iso values
- * begins with the usual value for the array, and changes with the array until the user sets others.
+ * begins with the usual value for the array, and changes with the array until the user sets values.
  *
  * The panel of a new filter begins with what suits its particles: the free surface unless a gas
  * fills its bounds, filled regions in two dimensions, an estimate if there are no smoothing lengths,
@@ -16,8 +16,8 @@
  * array: blocks as fluid; vx, vy and vz as velocity. Fields of numbers that are not given show the
  * words "not given".
  *
- * Pictures of the output have colours that span most of its area; charts show only its best array.
- * A gauge or a flux has a button that plots it at all times.
+ * In pictures of the output, the colours span the values on most of the area. Charts show only the
+ * output's best array. The panel of a gauge or a flux has a button that plots it over time.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h

@@ -99,7 +99,8 @@ def volumes():
 
 
 def curvature():
-    """Prints the curvature of balls on a lattice, times the radius: of the contour of a scalar that is 0 at the radius, and of the free surface."""
+    """Prints curvature times radius for balls on a lattice. The surface is the contour of a scalar that is 0 at the radius, or the free
+    surface."""
     lengths, rows = (1.0, 1.3, 1.7, 2.4), []
     for radius in (3, 4, 6, 10):
         x = lattice(*[(-radius - 8, radius + 8)] * 3)

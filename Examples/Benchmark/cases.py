@@ -133,7 +133,7 @@ def plane(benchmark):
 
 
 def make_image(bounds, *dimensions):
-    """Returns an image over the particles' bounds. An axis with a single point has it in the middle of the bounds."""
+    """Returns an image over the particles' bounds. A single point along an axis lies in the middle of the bounds."""
     image = vtk.vtkImageData()
     image.SetDimensions(*dimensions)
     pairs = list(zip(bounds[::2], bounds[1::2], dimensions))

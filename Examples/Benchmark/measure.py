@@ -58,7 +58,7 @@ def text_of(count):
 
 
 class Sets:
-    """Keeps particle sets in a folder. A set that exists already, made in the same way, is not made again."""
+    """Keeps particle sets in a folder. A set that was made in the same way before is not made again."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -177,7 +177,7 @@ def need_surface(result, what):
 
 
 def lattice(particles, cube, dimension):
-    """Returns an image around the particles. Its points are whole multiples of the cube size; in two dimensions they lie in the plane z = 0."""
+    """Returns an image around the particles. The coordinates of its points are multiples of the cube size; in two dimensions, z is 0."""
     low = [int(b // cube) - 2 for b in particles.GetBounds()[:2 * dimension:2]]
     high = [int(b // cube) + 3 for b in particles.GetBounds()[1:2 * dimension:2]]
     image = vtk.vtkImageData()
@@ -194,7 +194,7 @@ def exclude_others(filter_, particles, *kept):
 
 
 def interpolator(particles, image, h, dimension, *kept):
-    """Returns vtkSPHInterpolator for some arrays, before it has run."""
+    """Returns a vtkSPHInterpolator for the arrays `kept`, which has not run yet."""
     kernel = vtk.vtkSPHCubicKernel()
     kernel.SetSpatialStep(h)
     kernel.SetDimension(dimension)

@@ -49,7 +49,7 @@ class Data:
     lengths: tuple = ()
 
 
-# The totals are those that the paper prints, even where they are not the sum of the rows above.
+# The paper prints these totals; some are not the sum of the rows above.
 PAPER = {
     "rings": Data(
         "I", "vortex rings", "vortex-rings", 10000000, "VorticityMagnitude", 50, 20,
@@ -90,7 +90,7 @@ LENGTH_ROWS = (("Mean vector norm", "correction_mean"), ("Max vector norm", "cor
 
 
 def beside(ours, paper, text):
-    """Returns our figure, and in brackets the paper's and the ratio of both."""
+    """Returns our figure as text; in brackets the paper's figure, and ours divided by the paper's."""
     if paper is None:
         return f"{text(ours)} (-)"
     return f"{text(ours)} ({text(paper)}; {ratio(ours / paper)})"

@@ -36,7 +36,7 @@ def list_programs():
 
 
 def compile_program(number, sources, folder, version):
-    """Returns the kernels' names and the text of their code."""
+    """Returns the kernels' names, and their code as PTX text."""
     text, made = folder / "program.cl", [folder / name for name in ("all.bc", "kernels.bc", "best.bc", "program.ptx")]
     text.write_text("".join(f'#include "{FOLDER / source}"\n' for source in sources))
     clang = [f"clang-{version}", "-x", "cl", "-cl-std=CL1.2", "-D__OPENCL_VERSION__=120", f"-DMCOR_PROGRAM={number}", "-DMCOR_LANES=1",

@@ -22,8 +22,8 @@ class Step(NamedTuple):
 
 
 def list_steps(names, time_step):
-    """Returns all steps of the files, in order. Times come from the files if all have one and they ascend; otherwise they are multiples of
-    time_step."""
+    """Returns all steps of the files, in order. Times come from the files if every step has a time, and the times ascend; otherwise the times
+    are multiples of time_step."""
     steps = [(name, number) for name in in_order(names) for number in range(count_steps(name))]
     times = []
     for name, number in steps:

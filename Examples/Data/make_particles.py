@@ -51,7 +51,7 @@ def dam_break(count, ratio=1.28):
     wave = np.sqrt(GRAVITY * height)
 
     def axis(extent, spacing, grading=0.5):
-        """Returns coordinates and spacings of lattice planes; the spacing falls linearly along the axis, from 1 + grading to 1."""
+        """Returns coordinates and spacings of lattice planes. The spacings fall linearly along the axis, from (1 + grading) spacing to spacing."""
         planes = extent / spacing * np.log(1 + grading) / grading
         u = (np.arange(int(planes)) + 0.5) * spacing
         x = extent * (1 + 1 / grading - (1 + grading) / grading * np.exp(-grading * u / extent))

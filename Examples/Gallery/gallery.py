@@ -225,8 +225,8 @@ FINEST, SHARE = 0.002, 0.1  # The smallest spacing, and how it grows with the di
 
 
 def graded_particles():
-    """Returns the centres and edges of cubes that are divided until they are fine enough for their distance from the origin. They fill
-    half a ball below rings of waves, each half as high and as wide as the next ring outside."""
+    """Returns the centres and edges of cubes that are divided until they are fine enough for their distance from the origin. The cubes
+    fill half a ball below ring-shaped waves; each wave is half as high and as wide as the next wave outside."""
     centres, edge, found = np.zeros((1, 3)), 2.0, []
     while len(centres):
         far, beside = np.linalg.norm(centres, axis=1), np.hypot(centres[:, 0], centres[:, 1]) + 0.5 * FINEST

@@ -59,7 +59,7 @@ def flux():
     plotter.add_mesh(section, scalars="v_x", cmap="coolwarm", clim=(-3, 3), lighting=False,
                      scalar_bar_args=legend_of("velocity along the tank in m/s"))
     places = np.linspace(0.02, 3.2, 160)
-    # The sections lie across the tank; their normals point along it.
+    # The sections lie across the tank; their normals point along the tank.
     walls = {f"{x:.3f}": np.array([[x, -0.1, -0.6], [x, 1.3, -0.6], [x, -0.1, 0.6]]) for x in places}
     found = particles.sph.flux(walls, fluid=FLUID)
     figure, (above, below) = plt.subplots(2, 1, figsize=(9, 7.6), height_ratios=(1.5, 1), layout="constrained")
@@ -136,8 +136,8 @@ def numbers():
 
 
 def projection(count=60000, size=480, decades=3.5):
-    """Plots a disc galaxy, with gas in two spiral arms, from above and from the side: its column density, and beside it
-    counts of particles in pixels."""
+    """Plots a disc galaxy, with gas in two spiral arms, from above and from the side: on the left the column
+    density, on the right the numbers of particles in pixels."""
     random = np.random.default_rng(5)
     radius = 0.22 * random.gamma(2, size=count)
     angle = random.uniform(0, 2 * np.pi, count)
@@ -243,7 +243,7 @@ def method():
         return w.sum(), (w * value).sum() / max(w.sum(), 1e-12)
 
     def root(a, b, which, wanted):
-        """Returns where one of the sums has the wanted value, between two points on either side of it."""
+        """Returns where one of the sums has the wanted value, between the points a and b."""
         for _ in range(50):
             middle = (a + b) / 2
             a, b = (middle, b) if (sums(middle)[which] > wanted) == (sums(a)[which] > wanted) else (a, middle)

@@ -36,7 +36,7 @@ Picture NewPicture(const PictureOptions& options);
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
 std::vector<double> ListHdfTimes(const std::string& file);
 
-/// The functions that the library offers: those above, and one that reads a .stl, .ply or .obj file.
+/// The functions that the library offers: the three above, and one that reads a .stl, .ply or .obj file.
 struct Extra
 {
   decltype(&::NewPicture) NewPicture;

@@ -166,9 +166,9 @@ std::vector<double> ToGaugeGrid(const std::string& option, const std::string& te
 /// Reads NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
-/// Adds the places of the options, then those of their file, then the grid of gauges, to the job's
-/// filter of fluxes or of gauges. Returns how many there are. Throws UsageError if two places have
-/// one name, or a file has a wrong line or no place; std::runtime_error if a file cannot be read.
+/// Adds places to the job's filter of fluxes or of gauges: the options' places, then the places in the
+/// file of --fluxes or --gauges, then the grid of gauges. Returns their number. Throws UsageError if two places
+/// have one name, or a file has a wrong line or no place; std::runtime_error if a file cannot be read.
 std::size_t AddPlaces(const Job& job);
 
 /// Reads the command line into the job. Throws UsageError, see Text.h.

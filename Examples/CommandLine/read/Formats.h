@@ -98,8 +98,8 @@ vtkSmartPointer<vtkDataObject> ReadGadget(const std::string& file, std::size_t);
 View Trimmed(View text);
 std::string Small(View text);
 
-/// Reads a number as tables have it: also with a leading plus, Fortran's D, or a decimal comma, and
-/// nan and inf.
+/// Reads a number of a table. It may have a leading plus, Fortran's D or a decimal comma, or be nan or
+/// inf.
 bool ToNumber(View text, double& value);
 bool ToInteger(View text, vtkTypeInt64& value);
 
@@ -152,15 +152,15 @@ using Table = std::vector<Column>;
 
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
-/// Returns those of the columns x, y and z that exist. behind: letters that follow x, y and z in the
+/// Returns the columns x, y and z that exist. behind: letters that follow x, y and z in the
 /// names.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
-/// Finds the columns of positions by their names; none if no name tells. Fails if only some of x, y
+/// Finds the columns of positions by their names; none if no name fits. Fails if only some of x, y
 /// and z exist, unless two of them are the whole table.
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
-/// Makes particles of a table, whose positions are in these columns.
+/// Makes particles from a table. positions: the columns of the positions.
 vtkSmartPointer<vtkPolyData> ParticlesOf(
   const std::string& file, const Table& table, const std::vector<std::size_t>& positions);
 

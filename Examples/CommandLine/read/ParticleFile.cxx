@@ -54,7 +54,7 @@ struct Kind
   vtkSmartPointer<vtkDataObject> (*Read)(const std::string& file, std::size_t step);
   /// Lists the times of a file's steps; null if files of this format hold one step and no time.
   std::vector<double> (*ListTimes)(const std::string& file) = nullptr;
-  /// Lists the files that hold parts of the particles; null if the file itself has them all.
+  /// Lists the files that hold parts of the particles; null if the file itself holds all particles.
   std::vector<std::string> (*ListParts)(const std::string& file) = nullptr;
 };
 using Formats = std::vector<FileFormat<Kind>>;

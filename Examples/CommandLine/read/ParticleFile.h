@@ -43,7 +43,7 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
 /// as FILE#0, FILE#1, ...; for such a name, lists only this step's time.
 std::vector<double> ListTimes(const std::string& name);
 
-/// Returns the time between steps that these files store as `dt`; 0: a file has none, or they differ.
+/// Returns the time between steps that these files store as `dt`; 0: a file stores none, or the files differ.
 double StoredTimeStep(const std::vector<std::string>& files);
 
 /// Reads the particles that --walls names, as one set; null if there are none.

@@ -72,8 +72,8 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Checks the counts that an XML element, and the elements inside it, declare. The components of an array are counted
-/// once for each of `points`, the number of points of the last piece.
+/// Checks the counts that an XML element, and the elements inside it, declare. The number of an array's components is
+/// first multiplied by `points`, the number of points of the last piece.
 void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
   for (int i = 0; i < element->GetNumberOfAttributes(); ++i)
@@ -133,7 +133,7 @@ bool BeginsWithNumbers(View text, double count)
   return true;
 }
 
-/// Checks a legacy file. A line with counts begins with a word; attributes get their count from an
+/// Checks the counts in a legacy file. A line with counts begins with a word; attributes get their count from an
 /// earlier line. The arrays of a field have lines with a name, two counts and a type.
 void CheckLegacy(const std::string& file, View text)
 {

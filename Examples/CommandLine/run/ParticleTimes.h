@@ -58,7 +58,7 @@ public:
     const std::function<void(const Moment&)>& miss);
 
 private:
-  /// Lists the steps of files given one by one, and notes whether their times are told.
+  /// Lists the steps if the inputs are files of particles, not a list of files. Sets AreTold and StoredStep.
   std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
 
   /// Warns if neither the files nor the user tell the times of several steps, which tables need.

@@ -110,7 +110,7 @@ std::size_t LevelOf(const std::vector<double>& levels, double iso)
   return static_cast<std::size_t>(next - levels.begin());
 }
 
-/// Returns, for each iso value, the area that its lines enclose; NaN if they are not closed.
+/// Returns, for each iso value, the area that its lines enclose; NaN if a line is open.
 std::vector<double> AreasOfLines(
   vtkPolyData* surface, const std::string& isoName, const std::vector<double>& levels)
 {
@@ -206,7 +206,7 @@ bool MakeMeterTable(Sharing& sharing)
 }
 
 // Gives the filter of pieces the same settings of the particles as the surface's filter. Surfaces
-// of several iso values are nested, so each is measured by its pieces.
+// of several iso values are nested, so the surface of each iso value is measured by its pieces.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {

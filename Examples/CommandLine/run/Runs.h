@@ -84,7 +84,7 @@ std::string Draw(const Job& job, const std::string& file, vtkDataSet* data, vtkD
 /// Writes the picture of the job's only output, if it is wanted.
 void WritePicture(const Job& job, vtkDataSet* data, vtkDataSet* frame, ColorScale& colors);
 
-/// Evaluates the field at `points`, or projects the field if they are null. Returns the filter's
+/// Evaluates the field at `points`, or projects the field if `points` is null. Returns the filter's
 /// seconds.
 double Evaluate(
   Sharing& sharing, vtkPointSet* particles, vtkDataSet* points, const std::string& progress);

@@ -151,7 +151,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
   if (filter == job.Surface)
   {
-    // An array of one iso value for all points is useless, unless it colours them.
+    // In .ply, an array with one iso value for all points is useless unless it colours the points.
     const std::string& color = job.Picture.ColorBy;
     job.Surface->SetComputeScalars(!EndsWith(job.Output, ".ply") ||
       job.Surface->GetNumberOfContours() > 1 || (!color.empty() && !Contains(names, color)));

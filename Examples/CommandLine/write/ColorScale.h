@@ -24,15 +24,14 @@ public:
 
   /// Unless a range was given, widens the range by the values on most of this data set's area, so
   /// that a film's colours cover all steps so far. Throws std::runtime_error if the data set has
-  /// points but no such array.
+  /// points but lacks the array to colour by.
   void Include(vtkDataSet* data);
 
   /// Returns the array of the data set that colours its points, or its cells; nullptr: none does.
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
   vtkDataArray* CellArrayOf(vtkDataSet* data) const;
 
-  /// If no array was wanted, and the surface has several iso values, suggests the array that has
-  /// them.
+  /// If no array was wanted, and the surface has several iso values, suggests colours by iso value.
   void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for

@@ -36,8 +36,8 @@ std::string SurfaceFileEndings();
 /// lines with all arrays. Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
-/// Returns the bytes of an XML file with a mark: this is a step of a film, and another film may
-/// replace it.
+/// Adds a mark to the bytes of an XML file: the file is a step of a film, which another film may
+/// replace.
 std::string MarkedStep(std::string bytes);
 
 /// Whether the file has the mark of MarkedStep().
@@ -60,7 +60,7 @@ std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
 /// Returns a text as a field of CSV (RFC 4180) that no spreadsheet takes as a formula.
 std::string TableField(const std::string& text);
 
-/// Returns a value so that it is read back exactly; NaN is an empty field.
+/// Returns a value as text from which it is read back exactly; NaN is an empty field.
 std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component = 0);
 
 /// Appends a line for each row. If the text is empty, first appends a line with the columns' names.

@@ -179,7 +179,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return 1
 
     def RequestDataObject(self, request, inInfo, outInfo):
-        """Makes the output: blocks like those of the input if each block gets its own surface, else a poly data."""
+        """Makes the output: a vtkPolyData, or, if each block gets its own surface, a data set of the input's class."""
         data = self.GetInputData(inInfo, 0, 0)
         info = outInfo.GetInformationObject(0)
         blocks = isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART
@@ -319,8 +319,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 choice.FreeSurface = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice)).has_free_surface()
 
     def _look_at(self, points, ahead):
-        """Adds to `ahead` what these points tell. Each value needs only some of the arrays: the range no smoothing
-        length, the number of cells no scalar."""
+        """Adds to `ahead` what these points tell. No value needs all arrays: the scalar's range is found without smoothing
+        lengths, and the number of cells without a scalar."""
         choice = self._choice()
         self._settle(choice, points)
         with suppress(Error):

@@ -123,7 +123,7 @@ class SphAccessor:
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
 
-        scalar, scalar_dot: names of point arrays, or arrays. If there is no array "Density", it is summed from masses.
+        scalar, scalar_dot: names of point arrays, or arrays. If there is no array "Density", densities are summed from masses.
         iso: as in marchingcorrectors.isosurface().
         """
         particles, keywords = self._prepare(words)

@@ -57,7 +57,7 @@ def as_array(values, role):
 
 
 def contiguous(values, role):
-    """Returns an array of floats or doubles itself if it is contiguous and aligned, and a contiguous copy of any other array of numbers."""
+    """Returns numbers as a contiguous, aligned array of floats or doubles. Copies them only if they are not such an array yet."""
     array = as_array(values, role)
     if array.dtype == object:  # A data frame with columns of several types gives such objects.
         with contextlib.suppress(TypeError, ValueError):
@@ -88,7 +88,7 @@ def as_points(values, role, shape):
 
 
 def as_named(attributes):
-    """Returns {name: array} with texts as names. A data frame gives its columns, an array with a unit its numbers. An array
+    """Returns {name: array} of a mapping, or of a data frame's columns. Names become texts, and units are dropped. An array
     of objects, which data frames may have, becomes an array of texts or numbers."""
     if attributes is None:
         return {}
@@ -402,8 +402,8 @@ def take_all(result):
 
 
 def take_each(pointers, arguments, shape, more=()):
-    """Returns one array for each attribute that the core did not leave out, float32 if the attribute was. pointers: may be NULL in an
-    empty result."""
+    """Returns {name: array} of the attributes that the core did not leave out. An array is float32 if the given attribute is.
+    pointers: the core's arrays; NULL in some empty results."""
     arrays = {}
     for i, (name, (components, kind)) in enumerate(arguments.kinds.items()):
         values = take(pointers[i], shape + components + more) if pointers else None

@@ -137,7 +137,7 @@ class Finder(Arguments):
         self.request = {"find": source is not None}
 
     def add(self, name, array):
-        """Returns the array's name for the core, which needs a different name for each array."""
+        """Adds the array to `named` under a name that no other array has there. Returns this name."""
         while name in self.named and self.named[name] is not array:
             name += "'"
         self.named[name] = array

@@ -93,7 +93,7 @@ class Driver:
 
     def contexts_of(self, address):
         """Returns the context of the array at this address, and the primary context of its device, which stays retained. Memory of
-        pools and of virtual addresses has no context of its own, so both are the primary context."""
+        pools and of virtual addresses has no context of its own, so the primary context is returned twice."""
         context, device = ctypes.c_void_p(), ctypes.c_int()
         self.call("cuPointerGetAttribute", ctypes.byref(device), DEVICE_OF, ctypes.c_uint64(address))
         if device.value not in self.primary:

@@ -142,10 +142,10 @@ def between_steps(steps, times, rate, velocity):
 def between(before, after, first, last, time, velocity=None):
     """Returns the particles at a time between two steps, which are at the times first and last.
 
-    Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps. They are linear
-    in time without velocities, or, with a warning, if the velocities say less than half or more than twice the motion. Other
-    real numbers are linear in time. Integers, and arrays that one step lacks, are those of the nearer step. A particle that only
-    one step has exists in the half of the interval next to this step. Raises InvalidArgument if ids are missing or not unique.
+    Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps. They are linear in
+    time if there are no velocities, or, with a warning, if particles move less than half or more than twice as far as the velocities
+    say. Other real numbers are linear in time. Integers, and arrays that one step lacks, are those of the nearer step. A particle that
+    only one step has exists in the half of the interval next to this step. Raises InvalidArgument if ids are missing or not unique.
     """
     share, span = (time - first) / (last - first), last - first
     near, ids = (before, after)[share >= 0.5], []

@@ -37,9 +37,9 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
     Returns a Surface: points, triangles, normals, attributes, statistics, and the arrays that were asked for; lines in two
     dimensions. Points are float32 if the positions are; each attribute of the surface is float32 if the given attribute is.
 
-    positions: (particles, 3), length unit L. float32 and float64 arrays in C order are not
-        copied, neither here nor below. Lists, data frames, and arrays that support DLPack will do, too.
-        Or particles of io.read(): scalar is then an array's name, attributes a list of names.
+    positions: (particles, 3), length unit L. Or particles of io.read(): scalar is then an array's name, and attributes is a
+        list of names. All arguments that are arrays may also be lists, data frames, or arrays that support DLPack. Arrays of
+        float32 and float64 in C order are not copied.
     scalar: (particles,), or (particles, components), whose magnitude is taken, or one component
         (scalar_component=0, 1, ...), or the dot product with scalar_dot.
     iso: the value of the scalar on the surface, or a list of values; by default a value near the median.
@@ -53,14 +53,14 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
         the particles around, integers and bools from the nearest particle.
     scalar_dot: a second vector for each particle; the scalar is then the dot product.
     solid: (particles,), True or not 0 for walls. They take no part in the field.
-    fluid: ("Type", 0) or "Type=0": where this array, of the file or of the attributes, has another value, particles are
-        solid. Or (array, 0). "auto": an array of a usual name tells the fluid, if it does so clearly.
+    fluid: ("Type", 0) or "Type=0": particles with any other value in this array of the file or of the attributes are solid.
+        (array, 0) gives the array itself. "auto": an array with a usual name tells the fluid, if it does so clearly.
     outputs: further arrays of the surface, by their names below: outputs="residual", or ("residual", "gradients"); each is
         also a keyword: residual=True.
     within: six bounds, as in box, L: particles outside are left out, whatever their values are; sides may be infinite.
-    only: {"Type": 1}, {"Type": (1, 3)} or {"Species": "O"}: only particles with this value, or with a
-        value from the lowest to the highest one, in this array of the file or of the attributes are taken. A particle must
-        fit for all names. Or (particles,), True for particles that are taken.
+    only: {"Type": 1}, {"Type": (1, 3)} or {"Species": "O"}: only particles with this value, or with a value from the lowest
+        to the highest one, in this array of the file or of the attributes are taken. If there are several names, a particle
+        must satisfy all of them. Instead, an array (particles,) may mark the particles that are taken by True.
     context: a Context, to keep particles on the device between calls; by default the package
         has a context for each device, which keeps only compiled programs.
     device: a number or part of a name as in devices(), if no context is given.
@@ -74,8 +74,8 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
     in these units.
     A call refuses arrays with units together with arrays without units.
 
-    Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). What is
-    legal, but hardly meant, gives an InputWarning. Other threads run during the call; Ctrl-C ends it.
+    Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). Input that
+    is legal, but probably a mistake, gives an InputWarning. Other threads run during the call; Ctrl-C ends it.
     """
     return _extract(positions, iso, attributes, words, scalar, scalar_dot)
 
@@ -167,7 +167,7 @@ def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5,
     The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. The arguments are as in isosurface();
     most people need only some of the first ones.
 
-    fluid: ("Type", 0): where this array has another value, particles are solid.
+    fluid: ("Type", 0): particles with any other value in this array are solid.
     smoothing_length: (particles,) or one value, L, unless a file has it.
     outputs: further arrays of the surface, by their names below: outputs=("residual", "gradients").
 

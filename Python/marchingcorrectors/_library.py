@@ -40,7 +40,7 @@ class InvalidData(Error, ValueError):
 
 
 class OutOfCapacity(Error, MemoryError):
-    """The lattice, the device's memory or the host's would not suffice."""
+    """The lattice would be too large, or the memory of the device or of the host would not suffice."""
 
 
 class DeviceError(Error):
@@ -169,7 +169,7 @@ def devices() -> List[str]:
 
 
 class InputWarning(UserWarning):
-    """Something about the particles or options is legal, but hardly what was meant.
+    """Something about the particles or options is legal, but probably a mistake.
 
     code: the name of the core's sentence, such as "ISO_OUTSIDE"; "" for a sentence of this package.
     """

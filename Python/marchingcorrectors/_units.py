@@ -54,7 +54,7 @@ class Units:
                        "array of positions")
 
     def quantities(self, given):
-        """Returns {smoothing_length, volume, mass, density}; mass / density is a volume in the positions' unit."""
+        """Returns {smoothing_length, volume, mass, density}; volume and mass / density are in the positions' unit cubed."""
         mass, density = given["mass"], given["density"]
         if mass is not None and density is not None:
             own = unit_of(mass)
@@ -74,7 +74,7 @@ class Units:
 
 
 def scalar_and_iso(scalar, scalar_dot, iso):
-    """Returns plain numbers; the iso value is in the unit of the scalar, or of the dot product."""
+    """Returns the three as plain numbers. The iso value is in the unit of the scalar, or of the dot product."""
     unit, other = unit_of(scalar), unit_of(scalar_dot)
     if scalar_dot is not None and (unit is None) != (other is None):
         convert(scalar_dot, unit, "second vector of the dot product", "scalar")  # This call raises the refusal.

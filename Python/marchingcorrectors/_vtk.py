@@ -19,7 +19,7 @@ from ._options import camel
 from .io.vtk_files import VERTICES, find_vertices
 
 GHOSTS = "vtkGhostType"
-# The field data lack these options: users do not look for them, or statistics tell them.
+# These options are not written to the field data, because users do not look for them, or because statistics show them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells walls.
 
@@ -82,7 +82,7 @@ def find_period(points):
 
 
 class Request(NamedTuple):
-    """The point array to contour: its name, or the index of the active array. on_points: whether points have it."""
+    """The point array to contour: its name, or the index of the active array. on_points: False for an array of cells."""
     name: str = ""
     on_points: bool = True
     active: int = -1

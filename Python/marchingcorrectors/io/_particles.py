@@ -37,7 +37,7 @@ class FileError(Error, ValueError):
 
 
 def find_kernel(name):
-    """Returns the word of sph_kernel for a file's name of its kernel, or None."""
+    """Returns the word of sph_kernel for the name that a file gives to its kernel, or None if the name is not known."""
     plain = "".join(letter for letter in str(name).lower() if letter.isalnum())
     return next((word for start, word in KERNELS.items() if plain.startswith(start)), None)
 

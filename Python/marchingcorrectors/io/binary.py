@@ -91,7 +91,7 @@ def bytes_at(file, place, count):
 
 
 def order_of(head):
-    """Returns the byte order, "<" or ">", in which the first record is a header of 256 bytes, or the name "HEAD" of 8 bytes; else None."""
+    """Returns the byte order, "<" or ">", in which the first record has 256 bytes, or 8 bytes that begin with "HEAD"; else None."""
     for order in "<>":
         size = struct.unpack_from(order + "I", head)[0] if len(head) >= 8 else 0
         if size == 256 or (size == 8 and head[4:8] == b"HEAD"):

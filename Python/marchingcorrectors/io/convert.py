@@ -31,9 +31,9 @@ def plain(values):
 
 
 def describe(particles):
-    """Returns positions, arrays as in the file, and field data. Adds arrays that the file tells in another way: SmoothingLength as this package
-    means it (half of the support radius; a third for the quintic spline, 2/5 for the quartic), in place of the file's own array, Mass, and
-    ParticleType (0 fluid, 1 wall). Leaves out arrays that VTK cannot hold, with a warning if their type is the reason."""
+    """Returns positions, arrays as in the file, and field data. Adds arrays that the file tells in another way: Mass, ParticleType (0
+    fluid, 1 wall), and SmoothingLength as this package means it (half of the support radius; a third for the quintic spline, 2/5 for the
+    quartic), which replaces the file's own array. Leaves out arrays that VTK cannot hold, with a warning if their type is the reason."""
     positions, arrays = particles.positions, {name: particles.arrays[name] for name in particles.arrays}
     h = particles.quantity("smoothing_length")
     if h is not None:

@@ -168,8 +168,8 @@ def attributes(file, name):
 
 def period_of(file, box):
     """Returns the six bounds of the period, or None unless the file says that the run is periodic: open runs have a BoxSize, too.
-    AREPO is periodic along the axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or over
-    2^LONG_X_BITS (GADGET-4)."""
+    AREPO is periodic along the axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or
+    divided by 2^LONG_X_BITS (GADGET-4)."""
     parameters, config = attributes(file, "Parameters"), attributes(file, "Config")
     periodic = number(parameters, "InitialConditions:periodic", 0) == 1 or "PERIODIC" in config \
         or len(config) and "PeriodicBoundariesOn" in parameters
@@ -326,7 +326,7 @@ def read_h5part(path, file, step):
     part = Part(path, group.name, data_set(group, "x").size)
     arrays = {each: lambda n=each: load([part], n) for each in names_of(group, part.count, 1) if each not in axes}
     add_velocity(arrays, arrays)
-    # SPH-EXA's box is x0, x1, y0, ..., and boundaryType 0 for open sides, 1 for periodic, 2 for fixed ones.
+    # SPH-EXA's attribute box is x0, x1, y0, ..., and its attribute boundaryType is 0 for open, 1 for periodic, 2 for fixed sides.
     box, kinds = np.ravel(group.attrs.get("box", ())), np.ravel(group.attrs.get("boundaryType", ()))
     is_box = len(box) == 6 and len(kinds) == 3 and np.isfinite(box.astype(float)).all()
     period = [float(side) if int(kinds[i // 2]) == 1 else 0.0 for i, side in enumerate(box)] if is_box else [0.0]

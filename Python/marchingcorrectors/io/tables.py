@@ -149,7 +149,7 @@ def body_of(file, columns, positions=(), unnamed=(), **more):
 
 
 def name_columns(file, cells):
-    """Returns names without units in brackets, each different."""
+    """Returns the columns' names, without units in brackets. A name that occurs again gets a "_" at its end."""
     check_width(file, len(cells))
     names = {}
     for i, cell in enumerate(cells):

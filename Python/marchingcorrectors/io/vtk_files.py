@@ -23,8 +23,8 @@ IS_BLANK = np.isin(np.arange(256), np.frombuffer(b" \t\n\v\f\r", np.uint8))
 
 
 def parse_numbers(text, kind, count):
-    """Returns the first `count` numbers, with blanks between them, of bytes or a memoryview, and where the last one ends.
-    Raises ValueError. Time and memory depend only on the numbers that are read, not on the text behind them."""
+    """Reads the first `count` numbers of a text, which blanks separate. text: bytes or a memoryview. Returns the numbers, and where
+    the last one ends. Raises ValueError. Time and memory depend only on the numbers that are read, not on the text behind them."""
     size = 16 * count + 64
     while True:  # Longer pieces are tried until one has `count` words.
         piece = bytes(text[:size])

@@ -31,7 +31,7 @@ def radius_at(z):
 
 
 def crown(jitter, random):
-    """Returns the particles; the drops come last."""
+    """Returns the positions of the crown's particles; the drops come last."""
     parts = [lattice(52, 52, 5) - (26, 26, 5)]
     z, row = 0.5, 0
     while z < HEIGHT:

@@ -108,7 +108,7 @@ Kind KindOf(hid_t data)
   return whole == std::end(wholes) ? Kind{ VTK_VOID, -1 } : *whole;
 }
 
-/// Opens the group VTKHDF of a file.
+/// Opens the group VTKHDF of a file, and reads its arrays.
 class HdfFile
 {
 public:

@@ -131,8 +131,8 @@ int AxisOfLines(vtkDataSet* data)
   return -1;
 }
 
-/// Places the camera as near as possible with all corners of the box in the picture, and with equal
-/// space on opposite sides.
+/// Places the camera as near to the box as possible, so that all its corners are in the picture, with
+/// equal space on opposite sides.
 void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& box, double aspect)
 {
   vtkCamera* camera = renderer->GetActiveCamera();

@@ -225,7 +225,7 @@ private:
     }
   }
 
-  /// Adds a step that was written to the list of steps, and reports the step.
+  /// Puts a step whose file was written on the list of steps, and reports the step.
   void Keep(
     const Moment& moment, vtkFieldData* statistics, const std::string& what, double seconds)
   {

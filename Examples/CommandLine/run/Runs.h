@@ -125,7 +125,7 @@ std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vt
 /// Returns the most memory that this process has had so far; 0 if the system does not tell.
 double PeakResidentBytes();
 
-/// The part of Extract() for pieces. In films, the table has a column of times.
+/// The part of Extract() that adds pieces to the table `text`. In films, the table has a column of times.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time);
 

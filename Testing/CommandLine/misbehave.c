@@ -7,8 +7,8 @@
 //   MCOR_FAILING_CALL=fsync|close|rename  this call fails for files below MCOR_FAILING_FOLDER
 //   MCOR_RENAME_SECONDS=N                 each rename takes N seconds
 //   MCOR_TAKES_HANGUPS=1                  SIGHUP does nothing any more, as with some MPIs' UCX
-//   MCOR_READER=abort|recursion|fault     what the XML library does when VTK asks for it
-//   MCOR_READER_CALL=N                    does so when VTK asks for the Nth time (default 1)
+//   MCOR_READER=abort|recursion|fault     the XML library does this when VTK asks for a parser
+//   MCOR_READER_CALL=N                    only the Nth and later parsers do so (default 1)
 //   MCOR_DRIVER=abort                     crashes as soon as it is loaded as an OpenCL driver
 #define _GNU_SOURCE
 #include <dlfcn.h>

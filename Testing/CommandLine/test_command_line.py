@@ -585,7 +585,7 @@ class Picture(CommandLineTest):
         return read_png(path)
 
     def test_fit(self):
-        """The whole outline is in the picture from every side: its border is white, and drawn pixels are not far from it."""
+        """From every side the whole outline is in the picture: the picture's border is white, and drawn pixels are near the border."""
         for arguments in ([], ["--up", "z"], ["--up", "-x", "--view", "3,1,1"], ["--view", "0,1,0"],
                           ["--color-by", "Radius"]):
             with self.subTest(arguments):

@@ -91,7 +91,7 @@ class Meter(CommandLineTest):
                     self.assertEqual([row["mass"] == "" for row in rows], [False] * len(rows))
 
     def refuse_measuring(self, usage, failures):
-        """Checks that these usages (status 2) and data (status 1) are refused, and also faults that gauges and fluxes have in common. The
+        """Checks that these usages (status 2), these data (status 1), and faults that gauges and fluxes have in common are refused. The
         table must stay as it was."""
         many = self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (

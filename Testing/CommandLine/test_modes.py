@@ -100,7 +100,7 @@ HOLDS = {("--free-surface", "gauge"), *(("--weight-sum", mode) for mode in ("sli
 
 
 def numbers_of(report):
-    """Returns the statistics of a --stats report; if it has steps, those of each step, in nested lists."""
+    """Returns the statistics of a --stats report. If the report has steps, returns a list of each step's statistics."""
     if isinstance(report, list):
         return [numbers_of(each) for each in report]
     return report.get("statistics") or numbers_of(report.get("steps", []))

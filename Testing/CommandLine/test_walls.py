@@ -9,7 +9,7 @@ WRITERS = {".vtp": files.write_vtp, ".vtu": files.write_vtu, ".vtk": files.write
 
 
 class Walls(CommandLineTest):
-    """Compares fluid (Kind 0) and walls (Kind 1) in separate files with both in one file and --fluid."""
+    """Compares surfaces: fluid (Kind 0) and walls (Kind 1) are in separate files, or in one file with --fluid."""
 
     def setUp(self):
         super().setUp()

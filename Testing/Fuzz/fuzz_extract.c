@@ -311,7 +311,8 @@ static void fuzz_compare(const fuzz_call* call)
   mcor_free_surface(&fresh);
 }
 
-/* Makes a call that must fail, with the same version numbers of arrays as `call`, which must not reuse what it leaves. */
+/* Makes a call that must fail, with the same version numbers of arrays as `call`. `call` must not
+ * reuse data of the failed call. */
 static void fuzz_fail_first(const fuzz_call* call)
 {
   fuzz_call failing = *call;

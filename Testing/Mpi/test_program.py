@@ -339,8 +339,8 @@ class Program(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
 
     def test_film(self):
-        """A film with its tables, at stored times and between them, and gauges have the same bytes as one process makes. A step that fails
-        is named once, and all other steps are made."""
+        """Processes write the same bytes as one process: a film at stored times and between them, its tables, and gauges. A step that
+        fails is named once, and all other steps are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         points = self.path("points.csv")

@@ -376,7 +376,7 @@ def check_named():
 
 
 def check_few():
-    """A few particles have the same lengths by neighbours if other ranks have space without particles."""
+    """The smoothing lengths that a few particles get from their neighbours do not change if other ranks have no particles."""
     problems, whole = [], make_two_sizes()
     for count in 1, 2, 9:
         few = take(whole, np.arange(count))
@@ -398,7 +398,7 @@ def check_sent():
 
 
 def check_pieces():
-    """Pieces of a surface around fluid and walls count the fluid, which is found over ranks as by one process."""
+    """The fluid is found over all ranks, so the pieces of a surface hold as many fluid particles as with one process."""
     particles, counts = make_particles(DAM), []
     alone = [(particles, None)] if RANK == 0 else []
     for own, controller in [*alone, (take_part(particles, "scattered at random"), CONTROLLER)]:

@@ -66,7 +66,7 @@ class TestGauge(MeterTest):
         return gauge
 
     def check_row(self, row, level=0.5):
-        """Tests the row of an upright line: it is in fluid from the cube's lower to its upper side."""
+        """Tests the row of an upright line, which is in fluid from the cube's lower side to the upper side."""
         weight = sums_at(cube(), values_of(cube(), "Radius"), [[row[axis] for axis in "xyz"]])[0][0]
         self.assertEqual((row["state"], row["crossings"], row["first"]), ("wet", 2, row["last"]))
         self.assertTrue(0.9 < row["z"] < 1.2)

@@ -6,13 +6,13 @@
 with_pvserver.py SECONDS PVSERVER [ARGUMENT...] -- CLIENT [ARGUMENT...]
 
 The client finds HOST:PORT in MCOR_TEST_SERVER. What the server writes goes to a file, and is shown if
-something fails: a pipe that nobody reads would fill up and stop the server. After SECONDS both are
-ended, with their stacks shown where gdb is there; then this waits for ctest, which is to count it as a
-test whose time ran out: see TIMEOUT_AFTER_MATCH.
+something fails: a pipe that nobody reads would fill up and stop the server. After SECONDS the script shows
+the stacks of client and server, if there is gdb, and ends both. Then it waits until ctest ends the script
+and counts the test as one whose time ran out: see TIMEOUT_AFTER_MATCH.
 
-What to look for in the stacks: ParaView handles SIGTERM and crashes by writing its own stack, for which it
-calls malloc(). A signal that comes within malloc() or free() waits for its own lock then, for ever: a
-crash, or "timeout" without -k, looks like a standstill. The signal's place is below "signal handler called".
+What to look for in the stacks: at a crash, or SIGTERM ("timeout" without -k), ParaView's signal handler writes
+a stack, and calls malloc(). If the signal came within malloc() or free(), the handler waits for ever for a lock
+of its own thread, which looks like a standstill. The signal's place stands below "signal handler called".
 """
 import os
 import shutil

@@ -157,7 +157,7 @@ class Test(Case):
         return done.stdout
 
     def test_found(self):
-        """If no option names them, the filters of both languages and the program find the same fluid, arrays and dimension."""
+        """If no option names an array, the filters of both languages and the program find the same fluid, arrays and dimension."""
         sets = make_found(self.folder)
         cases = [[file, "", None, {"DetectFluid": detects, "FreeSurface": free}] for file, _ in sets.values()
                  for detects, free in ((1, 0), (0, 1))]

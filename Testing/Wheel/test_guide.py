@@ -89,8 +89,8 @@ class Test(unittest.TestCase):
         self.assertAlmostEqual(points[:, 0].min(), -0.5, delta=0.06)
 
     def test_dualsphysics(self):
-        """On a dam break with walls, the recipe makes more drops bodies, and leaves fewer particles outside of the surface, than one volume
-        for all particles."""
+        """On a dam break with walls, the recipe gives more drops a body of their own, and leaves fewer particles outside of the surface,
+        than one volume for all particles."""
         particles = pyvista.read(SOURCES / "Examples" / "Data" / "dam_break_45k.vtp")
         bare = pyvista.PolyData(particles.points)
         bare["Rhop"] = particles["Density"]
@@ -123,8 +123,8 @@ class Test(unittest.TestCase):
             self.assertEqual(bodies_of(recipes()[name](particles, size)), 1 + len(drops), name)
 
     def measure(self, name, file, recipe, volume, words):
-        """Runs a recipe, then the same with one volume for all particles. Returns (number of bodies, number of particles outside of the
-        surface) of each."""
+        """Makes two surfaces: by a recipe, and with one volume for all particles. Returns (number of bodies, number of particles outside
+        of the surface) of each surface."""
         rows = []
         for surface, more in ((recipe(file), {}), (file.sph.free_surface(volume=volume, **words), {"volume": volume})):
             weights = file.sph.probe(pyvista.PolyData(file.points), attributes=[], **words, **more)["WeightSum"]

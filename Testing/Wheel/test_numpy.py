@@ -40,7 +40,6 @@ def sphere(**more):
 
 
 def quietly(function, *arguments, **words):
-    """Calls the function without warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mc.InputWarning)
         return function(*arguments, **words)

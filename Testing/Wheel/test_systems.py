@@ -4,9 +4,9 @@
 
     test_systems.py windows|arm64 FOLDER_OF_THE_ENVIRONMENT
 
-windows: in a Windows CPython under wine. The test also goes through the guide's page for Python, with PyVista. CPython
-is put together without its own site: its library and extension modules come from a wheel that has them (panda3d), and its
-modules in Python come from a CPython of the same version on this machine. arm64: in Debian's Python for arm64, under qemu.
+windows: in a Windows CPython under wine. The test also goes through the guide's page for Python, with PyVista. Nothing
+comes from python.org: CPython's library and extension modules come from a wheel that has them (panda3d), and its modules
+in Python come from a CPython of the same version on this machine. arm64: in Debian's Python for arm64, under qemu.
 
 MCOR_WINDOWS_WHEEL, MCOR_ARM64_WHEEL: the path of a wheel; without it, Python/build-wheels builds the wheel. Status 77: there
 is no wine or qemu, or PyPI or Debian is out of reach.

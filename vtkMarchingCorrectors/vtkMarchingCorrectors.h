@@ -28,8 +28,8 @@
  *
  * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
- * velocities, the first vector, or the first scalar of the particles that varies on the surface;
- * with several iso values, the iso value is the last of the scalars. The output field data holds the
+ * velocities, the first vector, or the first scalar of the particles that varies on the surface. With
+ * several iso values, the iso value comes last among these scalars. The output field data holds the
  * arrays of the input's field data, and "IsoValues", whose component has the name of the point array
  * that gives each point's iso value. GetRunStatistics() holds statistics of the run, "Device" and
  * "Platform", and for each parameter the value in use. Everything except the device, the platform
@@ -137,7 +137,7 @@ public:
   /**
    * Contour values, in the unit of the scalar. Several values give several surfaces in one output.
    * By default there is none (NaN counts as none), and one surface is drawn at the median of the
-   * scalar in the fluid, or at another middle, see mcor_find_iso_value in mcor.h.
+   * scalar in the fluid, or at another middle value, see mcor_find_iso_value in mcor.h.
    */
   vtkSPHContoursMacro(Value, Contours, ContourValues, 0.0);
   double* GetValues() { return this->ContourValues->GetValues(); }
@@ -174,7 +174,7 @@ public:
   /**
    * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. When on,
    * the scalar, the contour values and the thresholds are not used. The default, FREE_SURFACE_AUTO:
-   * on if neither a scalar nor a contour value is given, and mcor_has_free_surface() finds one.
+   * on if neither a scalar nor a contour value is given, and mcor_has_free_surface() returns 1.
    */
   vtkSPHClampMacro(FreeSurface, int, FREE_SURFACE_AUTO, FREE_SURFACE_AUTO, 1);
   vtkBooleanMacro(FreeSurface, int);
@@ -234,8 +234,8 @@ public:
   ///@}
 
   /**
-   * Close the surface at the sides of the period and of the box's cells: by flat triangles where
-   * values are above the iso value, in two dimensions by straight lines. Trimming and walls may
+   * Close the surface at the sides of the period and of the box's cells, where values are above the
+   * iso value: with flat triangles, in two dimensions with straight lines. Trimming and walls may
    * leave the surface open. Off by default. An error with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping, 0);
@@ -252,8 +252,8 @@ public:
   ///@{
   /**
    * How the march is seeded. COMPLETE, the default, misses nothing that Marching Cubes on the full
-   * lattice would find; a free surface is always seeded so. PAIRS is for comparisons with the
-   * paper: it misses parts of the surface that pass between no two close particles, and is an error
+   * lattice would find; a free surface always has COMPLETE seeds. PAIRS is for comparisons with the
+   * paper: it finds only parts of the surface that pass between two close particles, and is an error
    * with cubes of several sizes, a box, caps or several processes.
    */
   vtkSPHClampMacro(SeedMode, int, COMPLETE, COMPLETE, PAIRS);
@@ -265,7 +265,7 @@ public:
   /**
    * How the corners of a cell are connected where their values are ambiguous. TOPOLOGY_TABLE (the
    * default) keeps the higher values apart, and makes no tunnels through cells. TOPOLOGY_FIELD
-   * evaluates the field there, so that bridges and tunnels as thin as a cube are the field's own.
+   * evaluates the field in such cells, so that bridges and tunnels as thin as a cube are the field's.
    */
   vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
@@ -287,10 +287,10 @@ public:
   vtkSPHFlagMacro(Smooth, 0);
 
   /**
-   * If above 1, each particle's smoothing length is multiplied by a factor. The factor is at most
-   * this value, and such that the particle stays inside the free surface: flat water becomes flat;
-   * drops, threads and sheets stay. The array Widening is the factor. From 1 (off, the default) to
-   * 4; 2 is usual.
+   * If above 1, each particle's smoothing length is multiplied by a factor: the greatest one, up to
+   * this value, with which the particle stays inside the free surface. Flat water becomes flat, and
+   * drops, threads and sheets stay. The array Widening holds the factor. From 1 (off, the default)
+   * to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double, 1.0);
 
@@ -311,7 +311,7 @@ public:
    */
   vtkSPHFlagMacro(Trim, 1);
 
-  /** Cells with a node whose weight sum is lower are discarded. No unit, 0.1 by default. */
+  /** Cells with a node whose weight sum is lower than this are discarded. No unit, 0.1 by default. */
   vtkSPHValueMacro(NodeThreshold, double, 0.1);
 
   ///@{
@@ -352,7 +352,7 @@ public:
    * Point arrays of the output; normals and scalars are on by default.
    * - Normals, "Normals": unit length, towards lower values.
    * - Scalars: the iso value. The array has the name of the contoured scalar, such as "Velocity_X" or
-   *   "A_Dot_B". It is "IsoValue" for the free surface and where a computed array has that name.
+   *   "A_Dot_B"; for the free surface, with Filled, or if a computed array has this name, "IsoValue".
    * - Gradients, "Gradients": of the field, unit of the scalar / L.
    * - WeightSum, "WeightSum": the weight used for trimming, no unit.
    * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection. It is also
@@ -403,12 +403,11 @@ public:
 
   ///@{
   /**
-   * Values that the last update used, to be shown in a panel. If blocks are APART, they are the
-   * last block's. They are empty, or 0, if nothing was drawn. FluidScalarRange: the range of the
-   * contoured scalar at the fluid particles. IsoValueArrayName: the point array that says which iso
-   * value each point has, if ComputeScalars is on. SurfaceMeasures: the area and, if the surface is
-   * closed, the volume, in words; of lines, length and area. EstimatedCells: about how many cubes
-   * of the virtual grid the fluid fills.
+   * Values that the last update used for its only or last block, to be shown in a panel; empty or 0
+   * if nothing was drawn. FluidScalarRange: the range of the contoured scalar at the fluid particles.
+   * IsoValueArrayName: the point array that says which iso value each point has, if ComputeScalars
+   * is on. SurfaceMeasures: the area and, if the surface is closed, the volume, in words; of lines,
+   * length and area. EstimatedCells: about how many cubes of the virtual grid the fluid fills.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkSPHToldMacro(UsedIsoValues);
@@ -463,7 +462,7 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output);
   bool TakeWidening(vtkRun& run, vtkSPHParticles& input);
-  /** Finds the arrays that Widen() writes for this process's particles, and their statistics. */
+  /** Finds the arrays that Widen() writes for this process's particles, and the core's statistics. */
   bool FindWidening(vtkRun& run, vtkSPHParticles& mine, vtkPointData* found,
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input, mcor_options options,

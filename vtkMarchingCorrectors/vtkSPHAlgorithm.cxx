@@ -203,7 +203,7 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   return request;
 }
 
-// The sentences of all blocks are kept, one a line.
+// ErrorMessage keeps the sentences of all blocks, one a line.
 void vtkSPHAlgorithm::Fail(const std::string& message)
 {
   const std::string sentence = this->BlockName + message;

@@ -136,8 +136,8 @@ public:
   ///@}
 
   /**
-   * The array or constant is the support radius of the kernel (where it becomes 0) instead of the
-   * smoothing length. Off by default.
+   * Take the array or constant as the support radius of the kernel, where the kernel becomes 0, not as
+   * the smoothing length. Off by default.
    */
   vtkSPHChoiceFlagMacro(SmoothingLengthIsSupportRadius);
 
@@ -233,9 +233,9 @@ public:
 
   ///@{
   /**
-   * 2: the particles lie in a plane of constant x, y or z. Sums are two-dimensional, volumes are
-   * areas, and vtkMarchingCorrectors makes lines. DIMENSION_AUTO (the default): 2 if exactly one
-   * coordinate is the same for all particles, else 3.
+   * The dimension. 2: the particles lie in a plane of constant x, y or z, sums are two-dimensional,
+   * volumes are areas, and vtkMarchingCorrectors makes lines. DIMENSION_AUTO (the default): 2 if
+   * exactly one coordinate is the same for all particles, else 3.
    */
   enum DimensionType
   {
@@ -265,7 +265,7 @@ public:
   /**
    * If no fluid array is named, look for something that clearly tells fluid from walls: an array
    * such as ParticleType that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
-   * together, with names such as "walls". Off by default: a warning then names what there is.
+   * together, with names such as "walls". If off (the default), a warning names what was found.
    */
   vtkSPHChoiceFlagMacro(DetectFluid);
 
@@ -354,10 +354,9 @@ public:
   ///@{
   /**
    * The processes that share a run; VTK's global controller by default. With MPI and more than one
-   * process, all update together, each with some of the particles (without those that vtkGhostType
-   * marks as duplicates) or none, and results are the same as from one process, to the last bit. If
-   * one process fails, all do. If blocks are APART, all processes must have
-   * the same number of blocks.
+   * process, all must update together, each with some of the particles or none; vtkGhostType marks
+   * duplicates, which are left out. Results are the same as from one process, to the last bit. If one
+   * process fails, all do. If blocks are APART, all processes must have the same number of blocks.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
@@ -432,10 +431,7 @@ protected:
   /** Requests all of an input, whatever part of the output is wanted. */
   static void AskForAll(vtkInformation* input);
 
-  /**
-   * Returns the class of what Process() makes of a data object of class `inputClassName`, which is
-   * not composite.
-   */
+  /** Returns the class of Process()'s output for an input of class `inputClassName` (not composite). */
   virtual const char* GetOutputClassName(const char* inputClassName) { return inputClassName; }
 
   /** Does the work, for the whole input or one of its blocks. */

@@ -251,8 +251,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
     "z", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx",
     "vy", "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
-  constexpr size_t withoutParticles = 16; // the other columns are about particles, which may be
-                                          // absent
+  constexpr size_t withoutParticles = 16; // number of columns if there are no particles
   const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];
   for (size_t c = 0; c < used; ++c)

@@ -16,8 +16,8 @@
  * below LeastVolume or LeastParticles are left out, with the cavities in them. Open pieces, which
  * have no volume and no particles, stay.
  *
- * With PeriodicBounds, a piece ends at the sides of the period only where it has caps in them, and
- * particles count in whichever piece holds an image of them.
+ * With PeriodicBounds, a piece ends at a side of the period only where it has a cap there. A particle
+ * counts in the piece that encloses an image of the particle.
  *
  * If the controller has several processes, each gets its part of the surface with ComponentId, and
  * the first one gets the table, the same as from one process; the others get one without rows. The

@@ -5,9 +5,9 @@
  * @brief   superclass of the filters that measure the fluid at places with names
  *
  * The output is a vtkTable with a row for each place, also if only a part of it is asked for.
- * Fluid is where the sum of the particles' weights is Level or more. Solids count in this sum, unless
- * IgnoreSolids is on, and the fluid ends where solids weigh more than fluid, as for the free surface
- * of vtkMarchingCorrectors with SOLIDS_WALL. Blocks of composite data are always one set of particles.
+ * Fluid is where the sum of the particles' weights is Level or more. Unless IgnoreSolids is on, solids
+ * count in this sum, and the fluid ends where solids weigh more than fluid, as for the free surface of
+ * vtkMarchingCorrectors with SOLIDS_WALL. Blocks of composite data are always one set of particles.
  *
  * If the controller has several processes, they share the work: each has some of the particles, and
  * the places of all processes are measured. The first process gets the table, the same to the last

@@ -121,9 +121,9 @@ struct ChunkProgress
 };
 
 /**
- * Version of the particles in a run of several chunks, if KeepDeviceData is off; no kept run has the
- * same version. Without a version, each chunk would make the search grid anew. A run of a single
- * chunk then has no version, so that only particles near its points go to the device.
+ * If KeepDeviceData is off, particles have this version in a run of several chunks. Without a
+ * version, each chunk would make the search grid anew. No kept run has this version. In a run of one
+ * chunk, particles have no version, so that only particles near its points go to the device.
  */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 
@@ -238,8 +238,7 @@ public:
     data->AddArray(this->Mask);
   }
 
-  std::vector<std::int64_t> NotFinite; // where interpolated arrays are not finite, as in
-                                       // mcor_samples
+  std::vector<std::int64_t> NotFinite; // as attribute_not_finite of mcor_samples
   mcor_statistics Statistics = {};     // statistics of the last points
 
 private:
@@ -412,8 +411,8 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   FinishOutput(*run, found, points ? probed : nullptr);
 }
 
-// Makes one of the found arrays the active scalars: the best by the particles' values. The points'
-// values do not decide, because points that are not valid have another value.
+// Chooses active scalars among the found arrays. The values at the particles decide, because points
+// that are not valid have a replacement value.
 void vtkSPHProbe::FinishOutput(vtkRun& run, vtkPointData* found, vtkDataSet* output)
 {
   vtkPointData* from = run.Own->GetPointData();

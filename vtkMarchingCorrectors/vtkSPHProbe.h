@@ -89,8 +89,8 @@ protected:
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
-  bool TakesTogether() const override { return false; } // each point is evaluated without the
-                                                        // others
+  // Blocks of points stay apart, because the value at a point does not depend on other points.
+  bool TakesTogether() const override { return false; }
 
   /** Returns 1, or 0 in a subclass whose only input are the particles. */
   int GetParticlesPort() override { return this->GetNumberOfInputPorts() - 1; }

@@ -14,9 +14,9 @@
  * densities and volumes. Otherwise the array has the scalar's name. With WeightArrayName the array
  * is the mean of the scalar along the line of sight; NaN where there is nothing.
  *
- * Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower end
- * of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction
- * matrix. It shows the Box with UseBox, else the period, or all that particles reach.
+ * If the direction is x, y or z, the image (vtkImageData) lies at the lower end of what is seen, as a
+ * slice of the world. Else a direction matrix turns it. Its points are the centres of pixels. The
+ * image shows the Box with UseBox, else the period, or all that particles reach.
  *
  * Blocks of composite data always are one set of particles. If the controller has several
  * processes, each has some of the particles, and each gets the part of the image that is asked for,

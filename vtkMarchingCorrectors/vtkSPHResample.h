@@ -6,9 +6,9 @@
  *
  * vtkSPHResample is a vtkSPHProbe that makes its own points; the particles are its only input:
  *
- *     SLICE (default)   quads of a plane, over the part of it in the box of the fluid's particles
+ *     SLICE (default)   quads that cover the part of a plane in the box of the fluid's particles
  *     LINE              points from Point1 to Point2, with their distance from the first as arc_length
- *     VOLUME            a vtkImageData around that box
+ *     VOLUME            a vtkImageData of Bounds
  *
  * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the
  * middle along the longest side of the fluid's box, and the volume is this box, all with a margin

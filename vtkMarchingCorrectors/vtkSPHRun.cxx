@@ -197,7 +197,7 @@ int vtkSPHAlgorithm::vtkRun::CallCore(vtkSPHParticles& particles,
   }
   if (keep)
   {
-    // The scalar is kept in the order of the particles: new particles make a new scalar.
+    // The core keeps the scalar in the order of the particles, so new particles need a new scalar.
     const bool areOthers = internals.Particles.Take(particles.ParticlesSignature);
     internals.Scalar.Take(particles.ScalarSignature, areOthers);
     internals.Attributes.Take(particles.AttributesSignature);

@@ -126,7 +126,7 @@ public:
   {
     return "";
   }
-  /** Returns false, after an error, if `problem` is not empty on any process. */
+  /** Returns true if `problem` is empty on all processes. Else reports the error and returns false. */
   virtual bool Agree(const std::string& problem);
 
   /** Takes this process's particles, which may be null. */
@@ -183,7 +183,7 @@ public:
   /** In a shared run, lists for each interpolated array the first particle of all processes whose
    * value is not finite, or -1. A run of one process changes nothing. */
   virtual void FindNotFinite(const vtkSPHParticles&, std::vector<std::int64_t>&) {}
-  /** Adds what each process has done to the statistics of the run. */
+  /** Adds to the statistics of the run how much each process has done. */
   virtual void AddShares() {}
   /** Gives the warnings of the core that need no surface. */
   virtual void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics);

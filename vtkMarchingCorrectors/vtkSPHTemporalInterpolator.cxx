@@ -122,7 +122,7 @@ void vtkSPHTemporalInterpolator::Fail(const std::string& message)
   vtkErrorMacro(<< sentence);
 }
 
-// Makes a poly data as output, or blocks of them if the input has blocks.
+// Makes a vtkPolyData as output, or a tree of blocks if the input has blocks.
 vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

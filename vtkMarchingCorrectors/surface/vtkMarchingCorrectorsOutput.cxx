@@ -29,11 +29,11 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/// A variation on the surface below this share of the array's range among the particles is noise.
+/// An array that varies on the surface by less than this share of its range at the particles is noise.
 constexpr double LeastShare = 0.03;
 
-// Adds the text `arrayName` with the array's name, which is empty if no array was used. If all
-// particles had one value, adds the number `name` with this value.
+// Adds a text named `arrayName` that holds the array's name; it is empty if no array was used. If
+// all particles had one value, adds a number named `name` that holds this value.
 void AddQuantity(
   vtkFieldData* data, const char* arrayName, const char* name, const mcor_array& array)
 {

@@ -67,7 +67,7 @@ struct vtkSPHParticlesChoice
   double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UnusedType; ///< a sentence: no fluid was chosen, although an array seems to tell it
-  /** Whether solid particles play no part, not even in weights and in computed volumes. Most filters
+  /** Whether solid particles are left out everywhere, also of weights and computed volumes. Most filters
    * have a setter for this member; vtkMarchingCorrectors sets it by SetSolids(). */
   vtkTypeBool IgnoreSolids = 0;
   int Kernel = 0;

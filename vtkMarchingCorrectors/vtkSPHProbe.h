@@ -71,8 +71,8 @@ public:
 
   ///@{
   /**
-   * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by
-   * default). NaNOutside is off by default.
+   * The value of arrays, except WeightSum and the mask, at invalid points: NaN if NaNOutside is on
+   * (off by default), else NullValue (0 by default).
    */
   vtkSPHFlagMacro(NaNOutside, 0);
   vtkSPHValueMacro(NullValue, double, 0.0);

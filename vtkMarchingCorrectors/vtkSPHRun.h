@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * Private to the module: one run of a filter over particles, by this process alone. A run of many
- * processes is vtkSharedRun in ranks/. Filters take the same steps with both, in the order below.
+ * processes is vtkSharedRun in ranks/. Filters take the same steps in both runs, in the order below.
  * In a shared run all processes call all steps, and each step returns the same everywhere: false if
  * it failed on any process (then all processes report the error), or if the run was cancelled.
  */
@@ -156,7 +156,7 @@ public:
    * `mine`.
    */
   virtual vtkSPHParticles* Share(vtkSPHParticles& mine) { return &mine; }
-  /** Marks the particles of Share() that this process owns; null: it owns all. */
+  /** Returns, for each particle of Share(), whether this process owns the particle; null: it owns all. */
   virtual const std::uint8_t* MarkOwned() { return nullptr; }
   /** Calls the core: `call` gets a context for the device, and returns the core's status. */
   virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);

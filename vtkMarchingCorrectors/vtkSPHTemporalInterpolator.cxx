@@ -335,7 +335,7 @@ void vtkSPHTemporalInterpolator::Fill(
   }
   for (const std::string& warning : pair.Warnings)
   {
-    // Warns once for all intervals in which the times are wrong by the same factor.
+    // Warns once for all intervals in which the times are wrong by about the same factor.
     if (pair.Ratio == 0.0 ||
       told.Ratios.insert(std::lround(4.0 * std::log2(std::max(pair.Ratio, 0.01)))).second)
     {

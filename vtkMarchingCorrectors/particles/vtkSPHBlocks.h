@@ -25,9 +25,9 @@ VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHHaveVertices(vtkDataObject* data);
 /**
  * Returns the particles of a data set, or of each of its blocks, in data of the same class. If a
  * block has other cells than vertices, and any block or process has vertices (haveVertices), points
- * without a vertex are nodes of a mesh, and are left out. Arrays of vertices become arrays of their
- * points, unless the points have an array of that name, or a point that stays has no vertex. Returns
- * the data set itself if nothing changes.
+ * without a vertex are nodes of a mesh, and are left out. Cell arrays of vertices become arrays of the
+ * vertices' points, unless the points have an array of the same name, or a point that stays has no
+ * vertex. Returns the data set itself if nothing changes.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(
   vtkDataObject* data, bool haveVertices);
@@ -53,7 +53,7 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
 
-/** Lists "Block: NAME", to be used as name of the fluid array, for each different name of a block; nothing if there is only one. */
+/** Lists "Block: NAME", to be used as name of the fluid array, for each different name of a block; if there is only one name, lists nothing. */
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**

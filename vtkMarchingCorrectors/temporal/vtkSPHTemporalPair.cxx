@@ -50,8 +50,8 @@ struct Values
 };
 
 /**
- * Makes an array like `a`, of floats if `a` and `b` are floats, else of doubles. Its values are
- * value(tuple, component), which several threads call.
+ * Makes an array like `a`, of floats if `a` and `b` are floats, else of doubles. The function
+ * value(tuple, component) returns its values; several threads call the function.
  */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(

@@ -57,7 +57,7 @@ public:
   ///@{
   /**
    * Sections by name. Names must differ. mcor_section_shape in mcor.h says which way the normals
-   * point. A rectangle has a corner and the ends of the two edges from it. The bounds of a
+   * point. A rectangle has a corner and the ends of the two edges from this corner. The bounds of a
    * box are x0, x1, y0, y1, z0, z1. A line is for two dimensions. A surface has the polygons, or
    * lines, of a data set.
    */

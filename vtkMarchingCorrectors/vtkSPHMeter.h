@@ -4,7 +4,7 @@
  * @class   vtkSPHMeter
  * @brief   superclass of the filters that measure the fluid at places with names
  *
- * The output is a vtkTable with a row for each place, also if only a part of it is asked for.
+ * The output is a vtkTable with a row for each place, also if only a part of the table is requested.
  * Fluid is where the sum of the particles' weights is Level or more. Unless IgnoreSolids is on, solids
  * count in this sum, and the fluid ends where solids weigh more than fluid, as for the free surface of
  * vtkMarchingCorrectors with SOLIDS_WALL. Blocks of composite data are always one set of particles.

@@ -269,7 +269,7 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
                                      : info->Get(Pipeline::UPDATE_PIECE_NUMBER());
   if (piece <= 0 && this->Shape == SLICE)
   {
-    // If the particles lie in a plane, the slice is this plane. Others would be lines.
+    // If the particles lie in a plane, the slice is this plane. Other slices would be lines.
     const bool isFlat = this->FlatAxis >= 0;
     const double along[3] = { this->FlatAxis == 0 ? 1.0 : 0.0, this->FlatAxis == 1 ? 1.0 : 0.0,
       this->FlatAxis == 2 ? 1.0 : 0.0 };

@@ -53,7 +53,7 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
 
-/** Lists "Block: NAME", to be used as name of the fluid array, for each different name of a block; if there is only one name, lists nothing. */
+/** Lists "Block: NAME", to be used as name of the fluid array, for each different name of a block; nothing if there is only one name. */
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**

@@ -14,8 +14,8 @@
  *     reaches. A point is sent to the rank whose box holds the point (vtkSPHSendTuples).
  *  5. Each rank calls the core for its box, as one process may for any box; thanks to the globals,
  *     the result is this part of the whole surface, to the last bit.
- *  6. The core's callbacks reduce and gather over all ranks; if one of them fails, the others' next
- *     callback ends their calls (vtkSPHSharedRun.cxx).
+ *  6. The core's callbacks reduce and gather over all ranks. If the core fails on one rank, the next
+ *     callback on each other rank ends that rank's call, too (vtkSPHSharedRun.cxx).
  *  7. Results at points and particles go back to the ranks from which the points and particles
  *     came (vtkSPHReturnTuples).
  *  8. A surface stays where it was made. Its points and triangles get their numbers in the whole

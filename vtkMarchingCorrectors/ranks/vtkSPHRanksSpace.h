@@ -49,8 +49,8 @@ public:
   /**
    * Divides the work evenly. input: this rank's particles. work: how much work each particle costs,
    * or 0 if no rank needs it. places: further work of this rank. parts: how many ranks get a box.
-   * Returns, for each rank, the particles that the rank needs: their supports, or images of them,
-   * reach its box, or they are near enough to be neighbours of such particles. Collective.
+   * Returns, for each rank, the particles that the rank needs: particles whose supports, or images of
+   * supports, reach the rank's box, and particles that may be their neighbours. Collective.
    */
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
     const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places, int parts);

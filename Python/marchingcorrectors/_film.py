@@ -79,7 +79,7 @@ def tell(surface, time):
 
 def run_particles(given, surface_of):
     """Makes a film of particles. surface_of(particles, more): returns the surface, and the keywords that made it. more: names of
-    arrays that the surface has in any case."""
+    arrays that the surface must have, even if the user does not want them."""
     if given.spray is not None and (given.scalar is not None or given.spray < 1):
         raise InvalidArgument("--spray needs a number of particles from 1 on." if given.scalar is None else
                               "--spray is for the free surface: leave --scalar out.")

@@ -115,7 +115,7 @@ def option_word(name, value):
 
 
 def in_shell(failure):
-    """Returns a sentence with the program's words for options."""
+    """Returns the sentence of an exception, with the program's words for options."""
     sentence = failure.args[0] if failure.args else ""
     return sentence.say(option_word) if isinstance(sentence, Sentence) else str(failure)
 

@@ -52,7 +52,7 @@ def named(data):
 
 
 def choose_array(arrays):
-    """Returns the most suitable array to show if the user has chosen none, or None."""
+    """Returns the array that is best to show if the user has chosen none; None if there is no such array."""
     best = lib.mcor_choose_view(*list_named([(array.GetName(), to_numpy(array)) for array in arrays]), -1, None)
     return None if best < 0 else arrays[best]
 

@@ -88,8 +88,8 @@ class Formats(CommandLineTest):
         self.assertEqual([single.unpack(single.pack(*place)) for place in found], [(p["x"], p["y"], p["z"]) for p in points])
 
     def test_colors(self):
-        """In a .ply file the array of --color-by gives the points' colours. Other formats say that they leave colours
-        out."""
+        """In a .ply file the array of --color-by gives the points' colours. For formats without arrays, a warning names the
+        arrays that are left out."""
         points = self.read_ply("--color-by", "Velocity", "--color-range", "0.46,0.7", "--attributes", "Velocity", "--output-precision", "single")
         self.assertGreater(set(points[0]), {"red", "green", "blue"})
         # The speed is nearly the distance from the centre, and the green of the colours grows with it.

@@ -319,8 +319,8 @@ static void fuzz_fail_first(const fuzz_call* call)
   mcor_surface surface;
   failing.options.iteration_limit = 0;
   const mcor_status status = fuzz_extract(fuzz_context(call, 0), &failing, &surface);
-  /* Two dimensions may be refused earlier: if particles lie in no plane, or walls in another plane
-   * than the fluid. */
+  /* Two dimensions may be refused earlier: if particles lie in no plane, or if walls lie in another
+   * plane than the fluid. */
   FUZZ_CHECK(status == MCOR_INVALID_ARGUMENT ||
     (status == MCOR_INVALID_DATA && failing.options.dimension != 3));
   mcor_free_surface(&surface);

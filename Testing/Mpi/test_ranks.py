@@ -252,8 +252,8 @@ def compare_surfaces(whole, parts):
 
 
 def compare_told(whole, all_told):
-    """Returns the names of reported values that differ between the ranks and rank 0 alone, and of numbers of cells that
-    are 0."""
+    """Returns the names of reported values that differ between the ranks and rank 0 alone, and "EstimatedCells" if it is not
+    above 0."""
     unknown = [("NextScalarRange", i) for i in range(2) if whole["NextScalarRange", 1] == 0]  # One process does not sum densities ahead.
     return [name for told in all_told for name, value in told.items() if name[0] == "EstimatedCells" and value <= 0
             or name not in unknown and abs(value - whole[name]) > (0 if name in EXACT else 1e-12 * abs(whole[name]))]
@@ -357,7 +357,7 @@ def check_without_points():
 
 
 def check_named():
-    """If a particle of the last rank cannot be summed, all ranks name it by its number on that rank."""
+    """If a particle of the last rank has an illegal mass or position, all ranks name the particle by its number on that rank."""
     problems = []
     for is_mass in False, True:
         own, filter_ = take_part(make_two_sizes(), "scattered at random"), vtkMarchingCorrectors()

@@ -116,7 +116,7 @@ def run_alone(script):
 
 
 def check_python_state():
-    """A state saved as Python loads after the one line that the guide gives."""
+    """A state that was saved as Python can be loaded if the line that the guide gives is run first."""
     source = PointSource(NumberOfPoints=100)
     made = SPHContourIsosurfaceFreeSurface(registrationName="found", Input=source)  # noqa: F821, pylint: disable=undefined-variable
     state = smstate.get_state() + '\nprint("found:", FindSource("found").CubeSizeFactor)\n'

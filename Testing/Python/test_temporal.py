@@ -144,7 +144,7 @@ class TestTemporal(unittest.TestCase):
         self.assertGreater(linear[-1], 1e-3)
 
     def test_formula(self):
-        """Compares a few particles that have any velocities with the formula of Hermite interpolation, also at times
+        """Compares a few particles, which have random velocities, with the formula of Hermite interpolation, also at times
         that are no simple fraction of the interval."""
         x0, x1, v0, v1 = numpy.random.default_rng(1).uniform(-1, 1, (4, 5, 3))
         film = interpolator({1.0: few(x0, range(5), v0), 3.0: few(x1, range(5), v1)})

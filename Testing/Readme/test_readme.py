@@ -7,7 +7,7 @@ test_readme.py SOURCE BUILD SCRATCH PAGE SECTION [PAGE SECTION]   "-": what stan
 test_readme.py SOURCE --links          all links between pages lead somewhere
 
 SCRATCH becomes what the page calls "this folder": it shows the source tree's files and, as "build", the build tree.
-Its program is on the PATH. Fenced blocks with a file name behind the language are written to that file; then the
+The program that was built is on the PATH. Fenced blocks with a file name behind the language are written to that file; then the
 blocks of language sh are run. They must succeed, leave every .vtp and .png that the section names, and
 print every "N triangles" that stands in a comment. Git must ignore the files that they write. The files of a second
 section are written, too, but its blocks are not run.

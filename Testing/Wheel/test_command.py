@@ -107,7 +107,7 @@ class Command(Case):
         self.assertEqual(mine.points.tobytes(), its.points.tobytes())
 
     def test_particle_distance(self):
-        """From --dp and --coefh, h and volumes follow for DualSPHysics' particles without mass and density."""
+        """--dp and --coefh give h and volumes to DualSPHysics' particles without mass and density."""
         line = np.arange(16) * 0.02
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3))
         data["Idp"] = np.arange(data.n_points)

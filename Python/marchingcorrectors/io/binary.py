@@ -263,7 +263,7 @@ class Reader:
         return name, RawArray(self.path, self.state, begin, dtype, count, columns)
 
     def item(self, depth=0):
-        """Returns (values, arrays, [items])."""
+        """Reads an item. Returns its (values, arrays, [items])."""
         if depth > DEPTH:
             raise FileError(f"{self.name} is damaged: too deep a nest of items.")
         self.number()

@@ -47,7 +47,7 @@ class Meter(CommandLineTest):
         self.assertEqual(len(lines), 2)
 
     def test_times(self):
-        """The time in a single file is used. Files without times are steps of dt if they hold the same dt, else of 1; a warning says so."""
+        """The time in a single file is used. Files without times are steps of dt if they hold the same dt, else of 1, with a warning."""
         for step in range(3):
             for name in ("step", "timed"):
                 files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))

@@ -20,7 +20,7 @@ from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, wr
 
 
 def write_vtk(path, kind="", version=0):
-    """Writes a file by VTK. With a version: a .vtk file of an unstructured grid, as SPlisHSPlasH writes it; kind is "text", or "" for binary.
+    """Writes a file by VTK. With a version: a .vtk file of an unstructured grid, as SPlisHSPlasH does; kind is "text", or "" for binary.
     With a kind alone: a .vtp file with this compressor; LZ4's data are base64, others' raw bytes. Else the path tells the format."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X

@@ -2,10 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Prints a hash of all bits of a few surfaces. same_bits.cmake compares the hashes between settings of the environment.
- * "small": small cases only, for slow devices. "fewer": the small cases with few nodes and with kernels that no other
- * case has, for tools that slow everything down. "devices": some small cases on all devices, each compared with the
- * first device. "usual": the cases that every device can do. "kernels": all other cases, and one for each SPH kernel
- * and precision. */
+ * The argument chooses the cases. "small": small ones, for slow devices. "fewer": small ones, without cases that have
+ * many nodes or run the same kernels as another case, for tools that slow everything down. "devices": some small ones
+ * on all devices, each compared with the first device. "usual": the cases that every device can do. "kernels": all
+ * other cases, and one for each SPH kernel and precision. */
 
 #include "core_fixture.h"
 #include "core_keep.h"
@@ -53,8 +53,7 @@ static const bits_case cases[] = {
   { "smooth", .field = MCOR_WEIGHT_SUM, .iso = 0.5, .smooth = 3 },
 };
 
-/* Gives every third particle a larger support, up to 64 times, and a volume that grows as its cube.
- * */
+/* Multiplies the support of every third particle by up to 64, and its volume by the cube of this factor. */
 static void widen(particle_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)

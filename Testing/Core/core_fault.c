@@ -8,8 +8,7 @@
 #include <stdatomic.h>
 #include <threads.h>
 
-/* fail_at: the number of the call that fails, from 0; -1: no call fails. call_count: the calls so
- * far. */
+/* fail_at: which call fails, counted from 0; -1: none. call_count: how many calls came so far. */
 static int fail_at = -1, call_count;
 
 /* The kinds of calls that may fail: setting an argument of a launch, any other OpenCL call, an
@@ -88,7 +87,7 @@ FAULT_WRITE(mcor_clEnqueueCopyBuffer, to,
   (queue, from, to, from_offset, to_offset, size, waits, wait, event))
 FAULT_CALL(mcor_clFinish, (cl_command_queue queue), (queue))
 
-/* Unmaps even if it reports a failure: otherwise this test would leave the buffer mapped. */
+/* Unmaps even when the caller is told of a failure: otherwise the buffer would stay mapped. */
 WRAP(cl_int, mcor_clEnqueueUnmapMemObject,
   (cl_command_queue queue, cl_mem mem, void* mapped, cl_uint waits, const cl_event* wait,
     cl_event* event))

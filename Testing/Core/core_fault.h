@@ -11,8 +11,7 @@
 
 #include "core_fixture.h"
 
-/* Makes the n-th OpenCL call from now on, counted from 0, fail with this error; -1: no call fails.
- * */
+/* Makes the n-th OpenCL call from now on, counted from 0, fail with this error; -1: no call fails. */
 void core_fail_call(int n, cl_int error);
 /* Like core_fail_call, but calls that set a launch's argument, which are most calls, are not counted and never fail. */
 void core_fail_command(int n, cl_int error);

@@ -135,8 +135,7 @@ uint64_t core_hash_of(mcor_context* context, const mcor_input* input, const mcor
 
 /* Fails unless the surface is an oriented manifold without degenerate triangles. */
 mesh_report core_check_mesh(const mcor_surface* surface);
-/* Like core_check_mesh, but allows two vertices in one place on an edge around which only two opposite cells are valid.
- * */
+/* Like core_check_mesh, but an edge may have two vertices in one place if only two opposite cells at it are valid. */
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
 /* Does what core_check_mesh does, and fails unless exactly the points of the mesh's boundary are flagged. */
 void core_check_flags(const mcor_surface* surface);

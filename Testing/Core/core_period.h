@@ -13,8 +13,8 @@ particle_set core_make_period(const int length[3], uint64_t seed);
 /* Returns the set with its images in the neighbouring periods, along the axes that have one. */
 particle_set core_add_images(const particle_set* set, const double period[6]);
 mcor_options core_period_options(const double* iso, const double period[6]);
-/* Stretches the set by other factors along each axis, so that no cube edge divides two of the
- * periods. The factors are chosen so that moving a position by a period rounds nothing. */
+/* Stretches the set and the period by a different factor along each axis, so that no cube edge
+ * divides two of the periods. With these factors, moving a position by a period rounds nothing. */
 void core_stretch_period(particle_set* set, double period[6]);
 
 #endif

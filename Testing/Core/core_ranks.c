@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_ranks.h"
 
-/* Ends the round if all ranks that have not left have come. The caller holds the lock. */
+/* Ends a round of waiting if all ranks that have not left are waiting. The caller holds the lock. */
 static void end_round_where_all_came(core_world* world)
 {
   if (world->came > 0 && world->came >= world->count - world->left)

@@ -223,7 +223,7 @@ static mcor_input input_of(
   return input;
 }
 
-/* Compares each case with the plain contour, and with the surface that boxes make together. */
+/* Compares each case with the contour without `compact`, and with the joined surfaces of boxes. */
 static void surfaces(void** state)
 {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
@@ -272,8 +272,7 @@ static int has_point(const mcor_surface* s, const double* point)
   return has;
 }
 
-/* Checks that nearly all points of the contour without caps that lie at least four cubes inside the
- * period are also points of the contour with caps. */
+/* Checks points at least four cubes inside the period: caps leave nearly all of them unchanged. */
 static void away_from_caps(void** state)
 {
   const compact_case* at = cases;

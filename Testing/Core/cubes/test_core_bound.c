@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares the bound on the field, which complete seeds use, with samples of the field. Checks all
- * nodes of the bricks that are proved to be inside. */
+/* Compares the bound on the field, which MCOR_COMPLETE uses, with samples of the field. Checks all nodes of the bricks
+ * that are proved to be inside. */
 
 #include "core_fixture.h"
 
@@ -93,7 +93,8 @@ static void free_particles(particles* p)
   free(p->value);
 }
 
-/* Computes F + iso (*field) and the trimming weight at a point, in double precision. */
+/* Writes the trimming weight and *field at a point, in double precision. For a mean, *field is sum V (A - iso) W; for a
+ * sum, sum V A W; for the weight sum, sum V W. */
 static void evaluate(const particles* p, const mcor_options* options, double iso,
   const double at[3], double* field, double* weight)
 {
@@ -149,8 +150,8 @@ static void check_box(const particles* p, const mcor_options* options, double is
   }
 }
 
-/* Returns box b. Boxes have several sizes and lie all over the lattice. The first 32 boxes hold a
- * particle, or a place where a particle's kernel is lowest. */
+/* Returns box b. Boxes have several sizes and lie all over the lattice. The first 32 boxes hold a particle, or a place
+ * 4/3 h from a particle, where M'4 is lowest. */
 static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, uint64_t* seed)
 {
   static const int sizes[] = { 3, 7, 3, 31 };

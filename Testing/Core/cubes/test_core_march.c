@@ -85,7 +85,7 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
 }
 
 /* ---- Node by node. Each particle lies on a node and reaches no other node, so the field at a node is the value of its
- * particle, and nodes without a particle have no weight. Thus cells are valid, or not, in any pattern. ---- */
+ * particle, and nodes without a particle have no weight. This makes any pattern of valid and invalid cells. ---- */
 
 #define NODES 8
 

@@ -178,9 +178,8 @@ static void test_pairs(void** state)
   }
 }
 
-/* The two particles of a pair are as far apart as a pair may be, to within rounding, and far apart in the order of
- * particles. The two forms of the kernels look at different groups of particles, and must find the same number of
- * cells. */
+/* The two particles of a pair are as far apart as a pair may be, to within rounding, and pairs are far from each other.
+ * The two forms of the kernels look at different groups of particles, and must find the same number of cells. */
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;

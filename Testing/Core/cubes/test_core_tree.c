@@ -93,8 +93,8 @@ static void more_leaves_than_the_limit(void** state)
   context->run.options = NULL;
 }
 
-/* The leaves of each level alone are within the limit, but those of all levels together are not. Where leaves are
- * sparse, most bricks are divided because of neighbouring bricks, few because of particles. */
+/* Each level alone has fewer leaves than the limit, all levels together have more. Where leaves are sparse, most bricks
+ * are divided because of neighbouring bricks, few because of particles. */
 static void more_leaves_of_all_levels(void** state)
 {
   mcor_context* context = *state;
@@ -121,7 +121,7 @@ static int stop_at(void* user, double fraction, const char* phase)
   return (*left)-- == 0;
 }
 
-/* The run asks often whether to go on: while particles split bricks (few at a time where they reach far), while
+/* The run asks often whether to go on: while particles split bricks (few particles at a time if they reach far), while
  * bricks are joined and split, and while leaves are listed. */
 static void making_leaves_can_be_cancelled(void** state)
 {

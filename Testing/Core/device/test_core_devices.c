@@ -97,7 +97,7 @@ static void check_programs(const mcor_input* input, const mcor_options* options)
   CORE_CHECK(built == (wanted | 1 << MCOR_PROGRAM_TRIM), "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
 }
 
-/* Runs with pairs, in a box, and with adaptive cubes have all of their programs built ahead. */
+/* mcor_list_programs must name what runs with pairs, in a box, and with adaptive cubes use. */
 static void test_programs_of_runs(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
@@ -123,8 +123,8 @@ static void test_programs_of_runs(void** state)
   unsetenv("MCOR_THREADS");
 }
 
-/* Checks that the run uses programs that are built ahead. A call may be cancelled while programs are built, and no
- * building thread may outlive the call. */
+/* Checks runs whose programs other threads build ahead. The call may be cancelled meanwhile, and no building thread may
+ * outlive the call. */
 static void test_building_ahead(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);

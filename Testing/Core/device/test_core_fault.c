@@ -9,8 +9,7 @@
 /* A call of the library in which every step is made to fail once. */
 typedef struct sweep
 {
-  /* Makes the call. If the call succeeds, *hash becomes the hash of its result. If it fails, the result must be empty.
-   * */
+  /* Makes the call. If it succeeds, *hash becomes the hash of the result; if it fails, the result must be empty. */
   mcor_status (*call)(
     mcor_context* context, const struct sweep* s, const mcor_input* input, uint64_t* hash);
   mcor_input input;
@@ -106,8 +105,7 @@ static mcor_status flux(
   return status;
 }
 
-/* callbacks: how many callbacks of the only rank were called. fail_callback: the number of the one that fails; -1:
- * none. */
+/* callbacks: how many of the only rank's callbacks came so far. fail_callback: which one fails, from 0; -1: none. */
 static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
@@ -284,8 +282,8 @@ static double flat(const double x[3])
   return x[2];
 }
 
-/* Lets calls fail in a run that uses all that the device does: attributes, topology by the field, both trimming
- * quantities, pairs that grow. */
+/* Lets calls fail in a run with attributes, topology by the field, weight and boundary eigenvalue, and seeds by pairs
+ * that grow. */
 static void test_every_call_fails_once(void** state)
 {
   mcor_context* context = *state;
@@ -359,8 +357,7 @@ static void test_filled(void** state)
   sweep_room(*state, &filled, 23, 100);
 }
 
-/* Lets calls fail in runs with a box, a period and walls; each run has steps that the others lack.
- * */
+/* Lets calls fail in runs with a box, a period and walls; each run has steps that the others lack. */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;
@@ -545,7 +542,8 @@ static void test_no_context(void** state)
   }
 }
 
-/* A call needs another device, which does not start: a profile (MCOR_PROFILE) does no harm. */
+/* Lets a call fail because a second device, which it needs, does not start. Writing a profile (MCOR_PROFILE) must do no
+ * harm. */
 static void test_profile_without_device(void** state)
 {
   const char* path = "core_fault_profile.csv";

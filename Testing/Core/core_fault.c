@@ -3,8 +3,6 @@
 
 #include "core_fault.h"
 
-#include <CL/cl_icd.h>
-
 #include <stdatomic.h>
 #include <threads.h>
 
@@ -32,20 +30,18 @@ static int fails(const char* name, int kind)
   {
     return 0;
   }
-  snprintf(failed_call, sizeof failed_call, "%s", strncmp(name, "mcor_", 5) == 0 ? name + 5 : name);
+  snprintf(failed_call, sizeof failed_call, "%s", name);
   return 1;
 }
 
-#define WRAP(type, name, parameters)                                                               \
-  type __real_##name parameters;                                                                   \
-  type __wrap_##name parameters;                                                                   \
-  type __wrap_##name parameters
+const cl_icd_dispatch* __real_mcor_driver(const void* object);
 
-#define FAULT_CALL(name, parameters, arguments)                                                    \
-  WRAP(cl_int, name, parameters)                                                                   \
+/* The first parameter is an object of the driver. */
+#define FAULT_CALL(name, object, parameters, arguments)                                            \
+  static cl_int try_##name parameters                                                              \
   {                                                                                                \
-    const int kind = strcmp(#name, "mcor_clSetKernelArg") == 0 ? ARGUMENT : COMMAND;               \
-    return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
+    const int kind = strcmp(#name, "clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
+    return fails(#name, kind) ? fail_with : (__real_mcor_driver(object)->name)arguments;           \
   }
 
 /* If CORE_SHADOWS is set, writes once more to the whole buffer that the host has written to (see
@@ -53,47 +49,48 @@ static int fails(const char* name, int kind)
 static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
 
 #define FAULT_WRITE(name, mem, parameters, arguments)                                              \
-  WRAP(cl_int, name, parameters)                                                                   \
+  static cl_int try_##name parameters                                                              \
   {                                                                                                \
-    return fails(#name, COMMAND) ? fail_with : write_again(queue, mem, __real_##name arguments);   \
+    return fails(#name, COMMAND)                                                                   \
+      ? fail_with                                                                                  \
+      : write_again(queue, mem, (__real_mcor_driver(queue)->name)arguments);                       \
   }
 
-FAULT_CALL(mcor_clBuildProgram,
+FAULT_CALL(clBuildProgram, program,
   (cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
     void(CL_CALLBACK* notify)(cl_program, void*), void* data),
   (program, count, devices, options, notify, data))
-FAULT_CALL(mcor_clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
-  (kernel, index, size, value))
-FAULT_CALL(mcor_clEnqueueNDRangeKernel,
+FAULT_CALL(clSetKernelArg, kernel,
+  (cl_kernel kernel, cl_uint index, size_t size, const void* value), (kernel, index, size, value))
+FAULT_CALL(clEnqueueNDRangeKernel, queue,
   (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
     const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait,
     cl_event* event),
   (queue, kernel, dimensions, offset, global, local, waits, wait, event))
-FAULT_CALL(mcor_clEnqueueReadBuffer,
+FAULT_CALL(clEnqueueReadBuffer, queue,
   (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size, void* data,
     cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_WRITE(mcor_clEnqueueWriteBuffer, mem,
+FAULT_WRITE(clEnqueueWriteBuffer, mem,
   (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
     const void* data, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_WRITE(mcor_clEnqueueFillBuffer, mem,
+FAULT_WRITE(clEnqueueFillBuffer, mem,
   (cl_command_queue queue, cl_mem mem, const void* pattern, size_t pattern_size, size_t offset,
     size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, pattern, pattern_size, offset, size, waits, wait, event))
-FAULT_WRITE(mcor_clEnqueueCopyBuffer, to,
+FAULT_WRITE(clEnqueueCopyBuffer, to,
   (cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset, size_t to_offset,
     size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, from, to, from_offset, to_offset, size, waits, wait, event))
-FAULT_CALL(mcor_clFinish, (cl_command_queue queue), (queue))
+FAULT_CALL(clFinish, queue, (cl_command_queue queue), (queue))
 
 /* Unmaps even when the caller is told of a failure: otherwise the buffer would stay mapped. */
-WRAP(cl_int, mcor_clEnqueueUnmapMemObject,
-  (cl_command_queue queue, cl_mem mem, void* mapped, cl_uint waits, const cl_event* wait,
-    cl_event* event))
+static cl_int try_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
+  cl_uint waits, const cl_event* wait, cl_event* event)
 {
-  const cl_int error = write_again(
-    queue, mem, __real_mcor_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event));
+  const cl_int error = write_again(queue, mem,
+    (__real_mcor_driver(queue)->clEnqueueUnmapMemObject)(queue, mem, mapped, waits, wait, event));
   return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
 }
 
@@ -104,15 +101,14 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error)
   {
     return error;
   }
-  error =
-    (*(cl_icd_dispatch* const*)mem)->clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size, &size, NULL);
+  error = clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size, &size, NULL);
   void* data = calloc(size, 1);
   if (error == CL_SUCCESS && data)
   {
     error = clEnqueueReadBuffer(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL);
-    error = error == CL_SUCCESS
-      ? __real_mcor_clEnqueueWriteBuffer(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
-      : error;
+    error = error == CL_SUCCESS ? (__real_mcor_driver(queue)->clEnqueueWriteBuffer)(
+                                    queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
+                                : error;
   }
   free(data);
   return error;
@@ -125,13 +121,13 @@ void core_set_build_log(const char* log)
   build_log = log;
 }
 
-WRAP(cl_int, mcor_clGetProgramBuildInfo,
-  (cl_program program, cl_device_id device, cl_program_build_info info, size_t size, void* value,
-    size_t* needed))
+static cl_int try_clGetProgramBuildInfo(cl_program program, cl_device_id device,
+  cl_program_build_info info, size_t size, void* value, size_t* needed)
 {
   if (!build_log)
   {
-    return __real_mcor_clGetProgramBuildInfo(program, device, info, size, value, needed);
+    return (__real_mcor_driver(program)->clGetProgramBuildInfo)(
+      program, device, info, size, value, needed);
   }
   assert_int_equal(info, CL_PROGRAM_BUILD_LOG);
   if (needed)
@@ -149,10 +145,10 @@ WRAP(cl_int, mcor_clGetProgramBuildInfo,
   return CL_SUCCESS;
 }
 
-WRAP(cl_int, mcor_clReleaseMemObject, (cl_mem mem))
+static cl_int try_clReleaseMemObject(cl_mem mem)
 {
   atomic_fetch_sub(&live_buffers, 1);
-  return getenv("CORE_SHADOWS") ? CL_SUCCESS : __real_mcor_clReleaseMemObject(mem);
+  return getenv("CORE_SHADOWS") ? CL_SUCCESS : (__real_mcor_driver(mem)->clReleaseMemObject)(mem);
 }
 
 /* Decides whether a call that returns a new object fails. Sets *error if it fails. */
@@ -169,14 +165,15 @@ static int fails_to_make(const char* name, cl_int* error)
 /* The device of the context that was created last. */
 static cl_device_id device_now;
 
-WRAP(cl_context, mcor_clCreateContext,
-  (const cl_context_properties* properties, cl_uint count, const cl_device_id* devices,
-    void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user, cl_int* error))
+static cl_context try_clCreateContext(const cl_context_properties* properties, cl_uint count,
+  const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
+  void* user, cl_int* error)
 {
   device_now = devices[0];
   return fails_to_make("clCreateContext", error)
     ? NULL
-    : __real_mcor_clCreateContext(properties, count, devices, notify, user, error);
+    : (__real_mcor_driver(devices[0])->clCreateContext)(
+        properties, count, devices, notify, user, error);
 }
 
 static cl_int fill(cl_context context, cl_mem mem, size_t size, unsigned char byte)
@@ -192,12 +189,12 @@ static cl_int fill(cl_context context, cl_mem mem, size_t size, unsigned char by
   return error;
 }
 
-WRAP(cl_mem, mcor_clCreateBuffer,
-  (cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error))
+static cl_mem try_clCreateBuffer(
+  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
   cl_mem mem = fails_to_make("clCreateBuffer", error)
     ? NULL
-    : __real_mcor_clCreateBuffer(context, flags, size, host, error);
+    : (__real_mcor_driver(context)->clCreateBuffer)(context, flags, size, host, error);
   const char* byte = getenv("CORE_FILL");
   if (mem && byte)
   {
@@ -207,24 +204,52 @@ WRAP(cl_mem, mcor_clCreateBuffer,
   return mem;
 }
 
-WRAP(void*, mcor_clEnqueueMapBuffer,
-  (cl_command_queue queue, cl_mem mem, cl_bool blocking, cl_map_flags flags, size_t offset,
-    size_t size, cl_uint waits, const cl_event* wait, cl_event* event, cl_int* error))
+static void* try_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
+  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
+  cl_event* event, cl_int* error)
 {
   return fails_to_make("clEnqueueMapBuffer", error)
     ? NULL
-    : __real_mcor_clEnqueueMapBuffer(
+    : (__real_mcor_driver(queue)->clEnqueueMapBuffer)(
         queue, mem, blocking, flags, offset, size, waits, wait, event, error);
 }
 
-WRAP(cl_kernel, mcor_clCreateKernel, (cl_program program, const char* name, cl_int* error))
+static cl_kernel try_clCreateKernel(cl_program program, const char* name, cl_int* error)
 {
-  return fails_to_make("clCreateKernel", error) ? NULL
-                                                : __real_mcor_clCreateKernel(program, name, error);
+  return fails_to_make("clCreateKernel", error)
+    ? NULL
+    : (__real_mcor_driver(program)->clCreateKernel)(program, name, error);
+}
+
+/* Returns the driver's functions, those above in place of its own. */
+const cl_icd_dispatch* __wrap_mcor_driver(const void* object);
+const cl_icd_dispatch* __wrap_mcor_driver(const void* object)
+{
+  static _Thread_local cl_icd_dispatch driver;
+  memcpy(&driver, __real_mcor_driver(object),
+    offsetof(cl_icd_dispatch, clCreateCommandQueueWithProperties));
+  driver.clBuildProgram = try_clBuildProgram;
+  driver.clCreateBuffer = try_clCreateBuffer;
+  driver.clCreateContext = try_clCreateContext;
+  driver.clCreateKernel = try_clCreateKernel;
+  driver.clSetKernelArg = try_clSetKernelArg;
+  driver.clEnqueueNDRangeKernel = try_clEnqueueNDRangeKernel;
+  driver.clEnqueueReadBuffer = try_clEnqueueReadBuffer;
+  driver.clEnqueueWriteBuffer = try_clEnqueueWriteBuffer;
+  driver.clEnqueueFillBuffer = try_clEnqueueFillBuffer;
+  driver.clEnqueueCopyBuffer = try_clEnqueueCopyBuffer;
+  driver.clEnqueueMapBuffer = try_clEnqueueMapBuffer;
+  driver.clEnqueueUnmapMemObject = try_clEnqueueUnmapMemObject;
+  driver.clFinish = try_clFinish;
+  driver.clGetProgramBuildInfo = try_clGetProgramBuildInfo;
+  driver.clReleaseMemObject = try_clReleaseMemObject;
+  return &driver;
 }
 
 #define FAULT_ALLOCATION(name, parameters, arguments)                                              \
-  WRAP(void*, name, parameters)                                                                    \
+  void* __real_##name parameters;                                                                  \
+  void* __wrap_##name parameters;                                                                  \
+  void* __wrap_##name parameters                                                                   \
   {                                                                                                \
     return fails(#name, ALLOCATION) ? NULL : __real_##name arguments;                              \
   }

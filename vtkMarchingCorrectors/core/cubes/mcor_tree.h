@@ -15,9 +15,7 @@
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
-/* mcor_tree_brick.c. Returns the number of bits that are set. */
-int mcor_bit_count(uint64_t bits);
-/* Adds bricks to a set. key: of the first brick of a cluster of 4^3 bricks; bricks: the mask of the
+/* mcor_tree_brick.c. Adds bricks to a set. key: of the first brick of a cluster of 4^3 bricks; bricks: the mask of the
  * cluster's bricks to add. Returns false if memory ran out. Also returns false, before the sets
  * take much memory, if the leaves would become too many. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);

@@ -89,16 +89,6 @@ mcor_status mcor_leaves_fit(mcor_context* context, bool fit)
 
 /* ---- Sets of bricks ---- */
 
-int mcor_bit_count(uint64_t bits)
-{
-  int count = 0;
-  for (; bits; bits &= bits - 1)
-  {
-    ++count;
-  }
-  return count;
-}
-
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks)
 {
   if (bricks == 0)
@@ -108,7 +98,7 @@ bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks)
   uint64_t* cluster = set->count > MCOR_SPLIT_LIMIT ? NULL : mcor_table_add(&set->clusters, key);
   if (cluster)
   {
-    set->count += (size_t)mcor_bit_count(bricks & ~*cluster);
+    set->count += (size_t)__builtin_popcountll(bricks & ~*cluster);
     *cluster |= bricks;
   }
   return cluster != NULL;

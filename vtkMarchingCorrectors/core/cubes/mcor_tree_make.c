@@ -155,7 +155,7 @@ static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, int level
     }
     split[row >> 2] |= is_split << 8 * (row & 3);
     leaves[row >> 2] |= is_leaf << 8 * (row & 3);
-    count += mcor_bit_count(is_leaf);
+    count += __builtin_popcount(is_leaf);
   }
   return count;
 }

@@ -36,7 +36,7 @@ static void mcor_find_devices(mcor_device_list* list, bool drivers)
   list->drivers_fail = drivers && !mcor_system_bears_drivers();
   if (drivers && !list->drivers_fail)
   {
-    clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count);
+    platform_count = mcor_list_platforms(MCOR_PLATFORM_LIMIT, platforms);
   }
   for (cl_uint p = 0; p < platform_count && list->count < MCOR_DEVICE_LIMIT; ++p)
   {
@@ -274,10 +274,11 @@ static mcor_status mcor_start_device(
   cl_int error;
   cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateContext");
-  cl->pool = mcor_is_native(cl) ? mcor_native_pool(cl->context) : NULL;
-  if (cl->pool && mcor_processors(count) < cl->units)
+  if (mcor_is_native(cl))
   {
-    cl->units = cl->pool->threads = mcor_processors(count);
+    const int share = mcor_processors(count);
+    cl->pool = mcor_native_pool(cl->context);
+    cl->units = cl->pool->threads = share < cl->units ? share : cl->units;
   }
   cl->segments = cl->is_cpu ? cl->units * 8 : 4096;
   cl->queue = clCreateCommandQueue(

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The built-in device's objects, memory, programs and kernels: what mcor_cl_*.c use of OpenCL. A
- * buffer is memory of the host. A command queue is always empty. */
+ * buffer is memory of the host. A command queue, which is always empty, is its context. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
@@ -46,12 +46,6 @@ struct _cl_context
   mcor_pool pool;
 };
 
-struct _cl_command_queue
-{
-  const cl_icd_dispatch* table;
-  cl_context context;
-};
-
 struct _cl_mem
 {
   const cl_icd_dispatch* table;
@@ -85,40 +79,22 @@ cl_platform_id mcor_native_platform(void)
   return mcor_best_instructions() >= 0 ? &mcor_platform : NULL;
 }
 
-/* Returns the number of threads that compute, the calling one included. */
-static int mcor_units(void)
+/* Answers a query of OpenCL with the `size` bytes at `from`. No caller asks for the size alone. */
+static cl_int mcor_answer(const void* from, size_t size, size_t room, void* to)
 {
-  return mcor_limit_threads(mcor_processors(1));
-}
-
-/* Answers a query of OpenCL with the `size` bytes at `from`. */
-static cl_int mcor_answer(const void* from, size_t size, size_t room, void* to, size_t* needed)
-{
-  if (needed)
-  {
-    *needed = size;
-  }
-  if (to && room < size)
+  if (room < size)
   {
     return CL_INVALID_VALUE;
   }
-  if (to)
-  {
-    memcpy(to, from, size);
-  }
+  memcpy(to, from, size);
   return CL_SUCCESS;
-}
-
-static cl_int mcor_answer_text(const char* text, size_t room, void* to, size_t* needed)
-{
-  return mcor_answer(text, strlen(text) + 1, room, to, needed);
 }
 
 static cl_int mcor_platform_info(
   cl_platform_id platform, cl_platform_info what, size_t room, void* to, size_t* needed)
 {
-  return what == CL_PLATFORM_NAME ? mcor_answer_text("built in", room, to, needed)
-                                  : CL_INVALID_VALUE;
+  static const char name[] = "built in";
+  return what == CL_PLATFORM_NAME ? mcor_answer(name, sizeof name, room, to) : CL_INVALID_VALUE;
 }
 
 static cl_int mcor_device_ids(
@@ -136,30 +112,32 @@ static cl_int mcor_device_info(
     "built in: this CPU, AVX-512" };
   const int best = mcor_best_instructions();
   const cl_device_type type = CL_DEVICE_TYPE_CPU;
-  const cl_uint units = (cl_uint)mcor_units(), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
+  const cl_uint units = (cl_uint)mcor_limit_threads(mcor_processors(1));
+  const cl_uint width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
   const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
     CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
   /* The machine's memory; what other programs use of it is not known. */
   const cl_ulong bytes = mcor_system_memory(), memory = bytes > 0 ? bytes : (cl_ulong)1 << 32;
-  switch (what)
+  const struct
   {
-    case CL_DEVICE_NAME:
-      return mcor_answer_text(names[best], room, to, needed);
-    case CL_DEVICE_TYPE:
-      return mcor_answer(&type, sizeof type, room, to, needed);
-    case CL_DEVICE_MAX_COMPUTE_UNITS:
-      return mcor_answer(&units, sizeof units, room, to, needed);
-    case CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT:
-      return mcor_answer(&width, sizeof width, room, to, needed);
-    case CL_DEVICE_SINGLE_FP_CONFIG:
-    case CL_DEVICE_DOUBLE_FP_CONFIG:
-      return mcor_answer(&rounding, sizeof rounding, room, to, needed);
-    case CL_DEVICE_GLOBAL_MEM_SIZE:
-    case CL_DEVICE_MAX_MEM_ALLOC_SIZE:
-      return mcor_answer(&memory, sizeof memory, room, to, needed);
-    default:
-      return CL_INVALID_VALUE;
+    cl_device_info what;
+    const void* from;
+    size_t size;
+  } answers[] = { { CL_DEVICE_NAME, names[best], strlen(names[best]) + 1 },
+    { CL_DEVICE_TYPE, &type, sizeof type }, { CL_DEVICE_MAX_COMPUTE_UNITS, &units, sizeof units },
+    { CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, &width, sizeof width },
+    { CL_DEVICE_SINGLE_FP_CONFIG, &rounding, sizeof rounding },
+    { CL_DEVICE_DOUBLE_FP_CONFIG, &rounding, sizeof rounding },
+    { CL_DEVICE_GLOBAL_MEM_SIZE, &memory, sizeof memory },
+    { CL_DEVICE_MAX_MEM_ALLOC_SIZE, &memory, sizeof memory } };
+  for (size_t i = 0; i < sizeof answers / sizeof answers[0]; ++i)
+  {
+    if (answers[i].what == what)
+    {
+      return mcor_answer(answers[i].from, answers[i].size, room, to);
+    }
   }
+  return CL_INVALID_VALUE;
 }
 
 /* ---- Objects ---- */
@@ -171,7 +149,6 @@ static cl_int mcor_device_info(
     free(object);                                                                                  \
     return CL_SUCCESS;                                                                             \
   }
-MCOR_RELEASE_ALONE(mcor_release_queue, cl_command_queue)
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
@@ -192,12 +169,7 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
   void* user, cl_int* error)
 {
-  cl_context context = mcor_make_object(sizeof *context, error);
-  if (context)
-  {
-    context->pool.threads = mcor_units();
-  }
-  return context;
+  return mcor_make_object(sizeof(struct _cl_context), error);
 }
 
 static cl_int mcor_release_context(cl_context context)
@@ -210,15 +182,12 @@ static cl_int mcor_release_context(cl_context context)
 static cl_command_queue mcor_make_queue(
   cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* error)
 {
-  cl_command_queue queue = mcor_make_object(sizeof *queue, error);
-  if (queue)
-  {
-    queue->context = context;
-  }
-  return queue;
+  *error = CL_SUCCESS;
+  return (cl_command_queue)context;
 }
 
-static cl_int mcor_finish_queue(cl_command_queue queue)
+/* Finishes or releases a queue: there is nothing to wait for, and nothing to free. */
+static cl_int mcor_leave_queue(cl_command_queue queue)
 {
   return CL_SUCCESS;
 }
@@ -337,31 +306,22 @@ static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* 
 
 static cl_int mcor_set_argument(cl_kernel kernel, cl_uint i, size_t size, const void* value)
 {
-  if (i >= kernel->count)
-  {
-    return CL_INVALID_ARG_INDEX;
-  }
-  if (kernel->kinds[i] == 'b')
-  {
-    const cl_mem buffer = *(const cl_mem*)value;
-    char* const data = buffer ? buffer->data : NULL;
-    memcpy(kernel->values[i], &data, sizeof data);
-    return CL_SUCCESS;
-  }
-  if (size != (size_t)(kernel->kinds[i] - '0'))
+  const bool is_buffer = kernel->kinds[i] == 'b';
+  const cl_mem buffer = is_buffer ? *(const cl_mem*)value : NULL;
+  char* const data = buffer ? buffer->data : NULL;
+  if (!is_buffer && size != (size_t)(kernel->kinds[i] - '0'))
   {
     return CL_INVALID_ARG_SIZE;
   }
-  memcpy(kernel->values[i], value, size);
+  memcpy(kernel->values[i], is_buffer ? &data : value, size);
   return CL_SUCCESS;
 }
 
 static cl_int mcor_kernel_info(
   cl_kernel kernel, cl_kernel_info what, size_t room, void* to, size_t* needed)
 {
-  return what == CL_KERNEL_NUM_ARGS
-    ? mcor_answer(&kernel->count, sizeof kernel->count, room, to, needed)
-    : CL_INVALID_VALUE;
+  return what == CL_KERNEL_NUM_ARGS ? mcor_answer(&kernel->count, sizeof kernel->count, room, to)
+                                    : CL_INVALID_VALUE;
 }
 
 /* ---- Launches ---- */
@@ -382,7 +342,7 @@ static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_ui
   const cl_event* wait, cl_event* event)
 {
   const size_t first = offset ? *offset : 0;
-  mcor_pool* pool = &queue->context->pool;
+  mcor_pool* pool = &((cl_context)queue)->pool;
   const size_t parts = (size_t)pool->threads * (*group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
   const size_t step = (*items + parts - 1) / parts;
   const bool is_short = *group > 1 && *items < MCOR_FEW_LIGHT_ITEMS;
@@ -400,8 +360,8 @@ const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_i
   .clCreateContext = mcor_make_context,
   .clReleaseContext = mcor_release_context,
   .clCreateCommandQueue = mcor_make_queue,
-  .clReleaseCommandQueue = mcor_release_queue,
-  .clFinish = mcor_finish_queue,
+  .clReleaseCommandQueue = mcor_leave_queue,
+  .clFinish = mcor_leave_queue,
   .clCreateBuffer = mcor_make_buffer,
   .clReleaseMemObject = mcor_release_buffer,
   .clEnqueueReadBuffer = mcor_read_buffer,

@@ -3,46 +3,51 @@
 #ifndef mcor_opencl_h
 #define mcor_opencl_h
 
-/* OpenCL's functions, found at run time (mcor_opencl.c), under names of their own, so that a
- * program with this library linked in may link OpenCL, too. */
+/* OpenCL's functions, found at run time. Every object of an OpenCL driver begins with a table of
+ * the driver's functions (extension cl_khr_icd), and so does every object of the built-in device.
+ * So an object alone is enough to call a function, and a program with this library linked in may
+ * link OpenCL, too. */
 
 #define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl_icd.h>
 
-#define clBuildProgram mcor_clBuildProgram
-#define clCreateBuffer mcor_clCreateBuffer
-#define clCreateCommandQueue mcor_clCreateCommandQueue
-#define clCreateContext mcor_clCreateContext
-#define clCreateKernel mcor_clCreateKernel
-#define clCreateProgramWithSource mcor_clCreateProgramWithSource
-#define clCreateSubDevices mcor_clCreateSubDevices
-#define clEnqueueCopyBuffer mcor_clEnqueueCopyBuffer
-#define clEnqueueFillBuffer mcor_clEnqueueFillBuffer
-#define clEnqueueMapBuffer mcor_clEnqueueMapBuffer
-#define clEnqueueNDRangeKernel mcor_clEnqueueNDRangeKernel
-#define clEnqueueReadBuffer mcor_clEnqueueReadBuffer
-#define clEnqueueReadBufferRect mcor_clEnqueueReadBufferRect
-#define clEnqueueUnmapMemObject mcor_clEnqueueUnmapMemObject
-#define clEnqueueWriteBuffer mcor_clEnqueueWriteBuffer
-#define clEnqueueWriteBufferRect mcor_clEnqueueWriteBufferRect
-#define clFinish mcor_clFinish
-#define clGetDeviceIDs mcor_clGetDeviceIDs
-#define clGetDeviceInfo mcor_clGetDeviceInfo
-#define clGetEventProfilingInfo mcor_clGetEventProfilingInfo
-#define clGetKernelInfo mcor_clGetKernelInfo
-#define clGetContextInfo mcor_clGetContextInfo
-#define clGetMemObjectInfo mcor_clGetMemObjectInfo
-#define clGetPlatformIDs mcor_clGetPlatformIDs
-#define clGetPlatformInfo mcor_clGetPlatformInfo
-#define clGetProgramBuildInfo mcor_clGetProgramBuildInfo
-#define clReleaseCommandQueue mcor_clReleaseCommandQueue
-#define clReleaseContext mcor_clReleaseContext
-#define clReleaseDevice mcor_clReleaseDevice
-#define clReleaseEvent mcor_clReleaseEvent
-#define clReleaseKernel mcor_clReleaseKernel
-#define clReleaseMemObject mcor_clReleaseMemObject
-#define clReleaseProgram mcor_clReleaseProgram
-#define clSetKernelArg mcor_clSetKernelArg
+/* Lists the platforms, the built-in one first. */
+cl_uint mcor_list_platforms(cl_uint room, cl_platform_id* platforms);
+/* Returns the functions of the driver that made an object. */
+const cl_icd_dispatch* mcor_driver(const void* object);
 
-#include <CL/cl.h>
+#define clBuildProgram(o, ...) mcor_driver(o)->clBuildProgram(o, __VA_ARGS__)
+#define clCreateBuffer(o, ...) mcor_driver(o)->clCreateBuffer(o, __VA_ARGS__)
+#define clCreateCommandQueue(o, ...) mcor_driver(o)->clCreateCommandQueue(o, __VA_ARGS__)
+#define clCreateContext(p, n, o, ...) mcor_driver(*(o))->clCreateContext(p, n, o, __VA_ARGS__)
+#define clCreateKernel(o, ...) mcor_driver(o)->clCreateKernel(o, __VA_ARGS__)
+#define clCreateProgramWithSource(o, ...) mcor_driver(o)->clCreateProgramWithSource(o, __VA_ARGS__)
+#define clCreateSubDevices(o, ...) mcor_driver(o)->clCreateSubDevices(o, __VA_ARGS__)
+#define clEnqueueCopyBuffer(o, ...) mcor_driver(o)->clEnqueueCopyBuffer(o, __VA_ARGS__)
+#define clEnqueueFillBuffer(o, ...) mcor_driver(o)->clEnqueueFillBuffer(o, __VA_ARGS__)
+#define clEnqueueMapBuffer(o, ...) mcor_driver(o)->clEnqueueMapBuffer(o, __VA_ARGS__)
+#define clEnqueueNDRangeKernel(o, ...) mcor_driver(o)->clEnqueueNDRangeKernel(o, __VA_ARGS__)
+#define clEnqueueReadBuffer(o, ...) mcor_driver(o)->clEnqueueReadBuffer(o, __VA_ARGS__)
+#define clEnqueueReadBufferRect(o, ...) mcor_driver(o)->clEnqueueReadBufferRect(o, __VA_ARGS__)
+#define clEnqueueUnmapMemObject(o, ...) mcor_driver(o)->clEnqueueUnmapMemObject(o, __VA_ARGS__)
+#define clEnqueueWriteBuffer(o, ...) mcor_driver(o)->clEnqueueWriteBuffer(o, __VA_ARGS__)
+#define clEnqueueWriteBufferRect(o, ...) mcor_driver(o)->clEnqueueWriteBufferRect(o, __VA_ARGS__)
+#define clFinish(o) mcor_driver(o)->clFinish(o)
+#define clGetContextInfo(o, ...) mcor_driver(o)->clGetContextInfo(o, __VA_ARGS__)
+#define clGetDeviceIDs(o, ...) mcor_driver(o)->clGetDeviceIDs(o, __VA_ARGS__)
+#define clGetDeviceInfo(o, ...) mcor_driver(o)->clGetDeviceInfo(o, __VA_ARGS__)
+#define clGetEventProfilingInfo(o, ...) mcor_driver(o)->clGetEventProfilingInfo(o, __VA_ARGS__)
+#define clGetKernelInfo(o, ...) mcor_driver(o)->clGetKernelInfo(o, __VA_ARGS__)
+#define clGetMemObjectInfo(o, ...) mcor_driver(o)->clGetMemObjectInfo(o, __VA_ARGS__)
+#define clGetPlatformInfo(o, ...) mcor_driver(o)->clGetPlatformInfo(o, __VA_ARGS__)
+#define clGetProgramBuildInfo(o, ...) mcor_driver(o)->clGetProgramBuildInfo(o, __VA_ARGS__)
+#define clReleaseCommandQueue(o) mcor_driver(o)->clReleaseCommandQueue(o)
+#define clReleaseContext(o) mcor_driver(o)->clReleaseContext(o)
+#define clReleaseDevice(o) mcor_driver(o)->clReleaseDevice(o)
+#define clReleaseEvent(o) mcor_driver(o)->clReleaseEvent(o)
+#define clReleaseKernel(o) mcor_driver(o)->clReleaseKernel(o)
+#define clReleaseMemObject(o) mcor_driver(o)->clReleaseMemObject(o)
+#define clReleaseProgram(o) mcor_driver(o)->clReleaseProgram(o)
+#define clSetKernelArg(o, ...) mcor_driver(o)->clSetKernelArg(o, __VA_ARGS__)
 
 #endif

@@ -222,7 +222,7 @@ static void test_no_density(void** state)
 }
 
 /* Smoothing lengths from 1 to 1024 with cubes for the smallest make a lattice of 10^12 cells. The surface must be
- * closed, and all vertices must lie on it. */
+ * closed, and the value at all vertices must be iso. */
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Tests particles that must play no part. Absent or ignored particles may hold anything. Particles too far away for the
- * virtual grid do not stop a run: with a box, or at points, they do not matter; otherwise a few are left out, with a
- * warning. */
+ * virtual grid do not stop a run: they do not matter to a call with a box or with points; any other call leaves a few
+ * of them out, with a warning. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -116,8 +116,7 @@ static void test_absent(void** state)
     set.solid[i] = (i * 2654435761 >> 7) % 8 == 0;
     set.solid[i] ? (void)0 : particle_set_append(&block, &set, i);
   }
-  /* Particles have other numbers in the two sets, so the nearest particle's number is not compared.
-   * */
+  /* A particle has another number in each set, so the nearest particle is not compared. */
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   check_same(*state, &block, &set, input_without_solids, &options);
 }
@@ -128,8 +127,7 @@ static int compare_hashes(const void* a, const void* b)
   return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
-/* Checks medians, which are taken over the 32 fluid particles with the least hashes; absent particles are not sampled.
- * */
+/* Checks medians over the 32 fluid particles with the least hashes; absent particles are not sampled. */
 static void test_measures(void** state)
 {
   enum
@@ -306,8 +304,7 @@ static void test_region(void** state)
   }
 }
 
-/* Checks a zoom: small particles lie in a lattice of large ones whose supports reach all of them.
- * */
+/* Checks a zoom: small particles lie in a lattice of large ones whose supports reach all small ones. */
 static void test_zoom(void** state)
 {
   const double iso = 0.5;

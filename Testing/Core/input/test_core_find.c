@@ -59,8 +59,8 @@ static void test_volumes(void** state)
   const mcor_named all[] = { real("h", h), real("Volume", volume), real("Mass", mass),
     real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
   /* file: letters of the arrays that the file has (v volume, m mass, d density). given: v, m, d: an array by name; M,
-   * D: a value; c: computed volumes; p: one volume. used: what makes the volumes. unused: what core_tells finds in the
-   * message on unused values; NULL: there is no message. */
+   * D: a value; c: computed volumes; p: one volume for all particles. used: what makes the volumes. unused: what
+   * core_tells finds in the message on unused values; NULL: there is no message. */
   const struct
   {
     const char *file, *given, *used, *unused;
@@ -153,7 +153,7 @@ static void test_elements(void** state)
   }
 }
 
-/* An array that is copied is copied once: mcor_project knows masses that are the weight by their data. */
+/* An array that is both mass and weight is copied once: mcor_project compares their pointers. */
 static void test_one_view(void** state)
 {
   const int32_t whole[COUNT] = { 1, 2, 3, 4 };

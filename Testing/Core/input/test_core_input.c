@@ -244,7 +244,7 @@ static void test_particles(void** state)
   expect_good(*state);
 }
 
-/* Moves more particles than may be left out along an axis. */
+/* Sets one coordinate of nine particles to `to`. Nine are more than may be left out. */
 static void move_far(bad_call* call, int axis, double to)
 {
   for (int i = 0; i < 9; ++i)
@@ -399,7 +399,7 @@ static void test_values_of_solids(void** state)
   }
 }
 
-/* Sets a vector for each particle, whose magnitude is unit * (scalar + 10). */
+/* Gives each particle a vector of magnitude unit * (scalar + 10). */
 static void make_vectors(bad_call* call, double unit)
 {
   for (int64_t i = 0; i < call->set.count; ++i)
@@ -558,8 +558,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* Checks whether a free surface is suggested, for particles that fill a cube, and at the end lack a part of one octant.
- * There are enough particles for several threads. */
+/* Checks whether a free surface is suggested, for particles that fill a cube, and then for the same without a part of
+ * one octant. There are enough particles for several threads. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

@@ -179,8 +179,8 @@ static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, in
   return 0;
 }
 
-/* Checks that a scalar whose form mcor_extract refuses is not read, and that the other ranks learn of it. Each array is
- * a heap block of its exact size, for sanitizers. */
+/* Checks that a scalar whose form mcor_extract refuses is not read, and that the other ranks learn of the refusal. Each
+ * array is a heap block of its exact size, for sanitizers. */
 static void test_iso_value_of_wrong_scalars(void** state)
 {
   CORE_FREED double* three = oracle_allocate(2 * 3, sizeof *three);

@@ -266,8 +266,8 @@ static void test_far_away(void** state)
   }
 }
 
-/* Checks that a body far beyond a corner of all other particles has the same values as alone, in any order of the
- * input. */
+/* Checks a body far away along the diagonal: its smoothing lengths are as without the other particles to within 1e-5,
+ * and the order of the input changes no bit. */
 static void test_far_body(void** state)
 {
   enum

@@ -170,8 +170,7 @@ static void test_measured(void** state)
     hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0], globals.measured.wall_share);
 }
 
-/* Checks the default: the wall share is measured for a scalar, and is 0 for the free surface, also with global values.
- * */
+/* Checks the default, also with global values: the wall share is measured for a scalar, and 0 for the free surface. */
 static void test_auto(void** state)
 {
   CORE_SET set = make_tank();

@@ -22,8 +22,8 @@ static void begin_call(warning_call* call)
   call->options = core_options(call->iso);
 }
 
-/* Checks each warning of the call: whether it is given, its code, and that it holds all of `words`, separated by |.
- * Returns how many are given. */
+/* Checks that the call gives the expected warning alone, with this code and all of `words`, separated by |; if words is
+ * NULL, it gives none. Returns how many warnings it gives. */
 static int check_call(mcor_context* context, warning_call* call, const char* name,
   mcor_warning expected, mcor_says code, const char* words)
 {
@@ -106,8 +106,7 @@ static void test_slots(void** state)
 static const mcor_array half = { .constant = 0.65 }, twice = { .constant = 2.6 },
                         wide = { .constant = 2.1 }, far_off = { .constant = 0.0013 };
 
-/* Moves every other particle close to the particle before it, as near as particles of a gas may be.
- * */
+/* Moves every other particle close to the particle before it, as near as particles of a gas may be. */
 static void pair_up(particle_set* set)
 {
   for (int64_t i = 3; i + 2 < 3 * set->count; i += 6)
@@ -349,8 +348,7 @@ static void test_trimmed(void** state)
     call.input.volume = (mcor_array){ .constant = 0.001 });
 }
 
-/* There is no text for a number that is no warning. The input may be NULL: with global values it
- * may be any part of the particles. */
+/* There is no text for a number that is no warning, and none for a warning on the input if the input is NULL. */
 static void test_without_input(void** state)
 {
   warning_call call;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests periods. Results are compared with the same particles and all their images as an input without a period.
+/* Tests periods. Results are compared with results without a period for the same particles and all their images.
  * Opposite sides of the surface are compared with each other. */
 
 #include "core_period.h"

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests probes and derivatives of periodic particles: they are compared with those of the same particles and all their
- * images. */
+/* Tests probes and derivatives of periodic particles, against results for the same particles and all their images. */
 
 #include "core_period.h"
 

@@ -130,8 +130,7 @@ static void test_all_phases_ask(void** state)
   context->report_interval = interval;
 }
 
-/* If sums have very many terms, a launch is cut into parts, and each part reports. No bit changes.
- * */
+/* If sums have very many terms, a launch is cut into parts. Each part reports. No bit changes. */
 static void test_long_launches_are_cut(void** state)
 {
   mcor_context* context = *state;

@@ -312,8 +312,8 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   assert_true(!surface.points && surface.point_count == 0);
 }
 
-/* A failed call may announce other data by new versions. The next call must not take these data for kept ones, and what
- * the call before the failed one left must stay right. */
+/* A failed call may have other data and new versions. Later calls with these data, and calls with the earlier data,
+ * must give the right results. */
 static void test_failed_calls(void** state)
 {
   mcor_context* context = *state;
@@ -371,8 +371,7 @@ static void extract_all(mcor_context* context, reuse_call* call)
   }
 }
 
-/* After mcor_release_memory a context holds only tables, whose size does not depend on the input.
- * */
+/* After mcor_release_memory a context holds only tables whose size does not depend on the input. */
 static void test_release(void** state)
 {
   CORE_CONTEXT context = NULL;

@@ -56,8 +56,7 @@ extern "C"
 
   /* Returns zeroed memory; ends the program if there is none. */
   void* oracle_allocate(int64_t count, size_t size);
-  /* Returns the array, enlarged if needed, with room for one element more than `count`. *capacity:
-   * its room. */
+  /* Returns the array, enlarged if needed to hold count + 1 elements. *capacity: its room, in elements. */
   void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size);
 
   /* The particles of all tests. The struct owns its arrays; particle_set_free frees them. */

@@ -102,8 +102,7 @@ static void case_check_mesh(case_run* run)
     run->options.precision == MCOR_FLOAT64 && c->trim_vertices > 0 && run->mesh.slimmest > 1e-14;
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
-    /* If two valid cells touch only in an edge, each has its own vertex there, both in one place.
-     * */
+    /* If two valid cells touch only in an edge, each has a vertex of its own there, in the same place. */
     const int64_t allowed = fault == MESH_COINCIDENT_POINT ? c->split
       : fault == MESH_ZERO_AREA && slivers                 ? run->mesh.faults[fault]
                                                            : 0;

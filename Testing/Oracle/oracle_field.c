@@ -81,8 +81,8 @@ double oracle_smallest_h(const particle_set* particles)
   return smallest;
 }
 
-/* ---- kd-tree: a node has the particles order[begin] to order[end - 1], and its children half of
- * them each; a leaf has a few ---- */
+/* ---- kd-tree: a node has the particles order[begin] to order[end - 1], and each of its two children half of these; a
+ * leaf has at most ORACLE_LEAF_SIZE ---- */
 
 enum
 {
@@ -362,9 +362,9 @@ static void oracle_add_matrix(const oracle_field* field, int64_t j, void* user)
   }
 }
 
-/* Writes the roots of the characteristic polynomial. Let m = q + s b, where b has the trace 0 and
- * its entries the sum of squares 6. The roots are q + 2 s cos(angle) at three angles a third of a
- * turn apart, with cos(3 angle) = det(b) / 2. */
+/* Writes the roots of the characteristic polynomial. Let m = q + s b, where b has trace 0, and the squares of its
+ * entries add up to 6. The roots are q + 2 s cos(angle) at three angles a third of a turn apart, with cos(3 angle) =
+ * det(b) / 2. */
 static void oracle_eigenvalues(double m[3][3], double eigenvalues[3])
 {
   const double q = (m[0][0] + m[1][1] + m[2][2]) / 3.0;

@@ -32,8 +32,7 @@ static int lattice_counts(const particle_set* p, int64_t j)
   return !p->solid[j] || !p->ignore_solids;
 }
 
-/* Sets each particle's level: the highest level whose cubes are still fine enough for the particle.
- * */
+/* Sets each particle's level: the highest one whose cubes are still fine enough for the particle. */
 static void lattice_set_levels(lattice_descent* descent, int level_limit)
 {
   const particle_set* p = descent->field->particles;

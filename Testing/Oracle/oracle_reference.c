@@ -100,7 +100,7 @@ static int64_t* reference_images(
     largest = fmax(largest, particles->smoothing_length[j]);
   }
   reference_edges(particles, options, edge);
-  /* If volumes are computed, images must be kept over the whole support, before h is scaled. */
+  /* If volumes are computed, images are needed over the whole support of the unscaled h. */
   return oracle_add_images(particles, options, support * options->h_scale,
     own_volumes ? 0.0 : support * largest, fmax(edge[0], fmax(edge[1], edge[2])));
 }

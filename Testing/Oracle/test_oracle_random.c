@@ -18,8 +18,7 @@ static double pick(uint64_t* state, const double* values, int count)
   return values[random_bits(state) % (uint64_t)count];
 }
 
-/* Below this seed only the first five kernels are used: these seeds found faults when no others
- * existed. */
+/* Below this seed only the first five kernels are used: these seeds found faults when there were no other kernels. */
 #define SEEDS_OF_FIVE_KERNELS 1000
 
 static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, double* iso)
@@ -55,8 +54,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
     at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
-  /* If volumes of the free surface are computed, they differ with and without solids, so such cases have no wall share.
-   * */
+  /* If volumes of the free surface are computed, they depend on solids, so such cases have no wall share. */
   if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.volume.data))
   {
     static const double shares[] = { 0.0, 0.5, 0.8 };

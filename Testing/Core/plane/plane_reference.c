@@ -9,8 +9,10 @@ double plane_u(const plane_field* f, int64_t i, int a)
   return f->set->position[3 * i + (f->axis + 1 + a) % 3];
 }
 
-/* Returns how far the point is inside of the trimmed surface; below 0, it is outside. The measure is the weight, or the
- * lower eigenvalue of the symmetric matrix m (uu, uv, vv), less the threshold; and, at walls, the solids' share. */
+/* Returns how far the point is inside of the trimmed surface; below 0, it is outside. This is the lesser of two
+ * margins. The first, which the free surface does not have, is the weight, or the lower eigenvalue of the symmetric
+ * matrix m (uu, uv, vv), minus the threshold. The second, at walls, is wall_share times the weight, minus the solids'
+ * weight. */
 static double plane_margin(const plane_field* f, const plane_sample* s, const double m[3])
 {
   const mcor_options* o = f->options;

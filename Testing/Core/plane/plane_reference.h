@@ -3,9 +3,9 @@
 #ifndef plane_reference_h
 #define plane_reference_h
 
-/* A reference for particles in a plane: the field and its squares, which are as fine as the particles, at all nodes in
- * double precision. The plane lies across `axis` (0 x, 1 y, 2 z) at the coordinate `at`. The other two coordinates, in
- * cyclic order, are u and v. */
+/* A reference for particles in a plane: the field in double precision, at all nodes of squares that are as fine as the
+ * particles. The plane lies across `axis` (0 x, 1 y, 2 z) at the coordinate `at`. The other two coordinates, in cyclic
+ * order, are u and v. */
 
 #include "core_fixture.h"
 

@@ -18,14 +18,13 @@ typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */
   int axis, rising;
-  /* valid: a square at the edge is valid. close: rounding may decide whether the square is valid.
-   * */
+  /* valid: a square at the edge is valid. close: rounding may decide whether it is valid. */
   int valid, close;
   int found;
   int64_t next; /* the edge where the line that begins here ends, or -1 */
 } plane_edge;
 
-/* All squares that the oracle's lattice has: bricks of 4 x 4 squares of their level in the plane z = 0. */
+/* The squares that the oracle's lattice has in the plane z = 0: each brick has 4 x 4 squares of the brick's level. */
 typedef struct plane_squares
 {
   const plane_field* field;

@@ -235,8 +235,7 @@ static void check_close(double a, double b, double tolerance, const char* what)
   CORE_CHECK(fabs(a - b) <= tolerance * fabs(b), what, a, b);
 }
 
-/* The region that the free surface's lines enclose is filled, and these lines are its whole border.
- * */
+/* The region inside the free surface's lines is filled, and these lines are its whole border. */
 static void test_free_surface(void** state)
 {
   const double iso = 0.5;
@@ -349,8 +348,7 @@ static void test_trimming(void** state)
   }
 }
 
-/* Filled regions of random fields have no gaps: with noise, walls, and all options that move lines.
- * */
+/* Filled regions of random fields have no gaps, even with noise, walls, and all options that move lines. */
 static void test_random(void** state)
 {
   uint64_t seed = 21;

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests caps of particles in a plane: lines along the sides of periods and boxes, wherever there is fluid at the side.
- * */
+/* Tests caps of particles in a plane: lines along sides of periods and boxes, where there is fluid at the side. */
 
 #include "plane_reference.h"
 

@@ -8,8 +8,7 @@
 #include "core_period.h"
 #include "mcor_vector.h"
 
-/* Fails unless the points and triangles of the surface with caps begin with those of the surface
- * without caps. */
+/* Fails unless the surface with caps begins with all points and triangles of the surface without caps. */
 static void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
 {
   const size_t points = (size_t)open->point_count, triangles = (size_t)open->triangle_count;
@@ -65,8 +64,7 @@ typedef struct cap_case
   mcor_type precision;
 } cap_case;
 
-/* Checks points that only caps have: they lie on `planes`, have the oracle's values, and their normals point outwards.
- * */
+/* Checks points that only caps have: they lie on `planes`, with the oracle's values and normals that point outwards. */
 static void check_points(const particle_set* all, const mcor_options* options,
   const mcor_surface* open, const mcor_surface* closed, const double planes[6])
 {

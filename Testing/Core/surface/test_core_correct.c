@@ -21,7 +21,7 @@ static double rough(const double x[3])
   return sin(50 * x[0] + 31 * x[1] + 77 * x[2]);
 }
 
-/* In double precision the residual shows if any particle was left out, even one at whose kernel's rim the vertex lies.
+/* In double precision the residual shows if any particle was left out, even one whose support just reaches the vertex.
  * Cubes are coarse, so vertices move far from where their neighbours were gathered. Each set is mirrored, too, so that
  * vertices move in both directions. */
 static void test_every_particle_counts(void** state)
@@ -141,7 +141,7 @@ static void test_iteration_limit(void** state)
   CORE_CHECK(last < 1e-5, last);
 }
 
-/* A looser tolerance must be met as well, with fewer evaluations. */
+/* A looser tolerance must also be met, with fewer evaluations. */
 static void test_tolerance(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, core_ball);

@@ -6,7 +6,7 @@
 #include "core_fixture.h"
 
 /* A threshold of 0 trims nothing, and a high one trims everything; thresholds between shrink the surface. Points where
- * it ends are flagged. */
+ * the surface ends are flagged. */
 static void test_thresholds(void** state)
 {
   CORE_SET set = core_make_block(8, 0.2, 3, core_slope);

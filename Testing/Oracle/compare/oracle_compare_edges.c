@@ -38,9 +38,9 @@ static void compare_note_edge(compare_state* state, const char* what, const latt
 
 /* ---- vertices ---- */
 
-/* Finds the crossed edges without a vertex so far on which a point may lie, ends included. Returns how many there are.
- * *axis: the axis of the edge inside which the point lies; -1: the point lies on a node; -2: on no line of the lattice.
- * */
+/* Finds the crossed edges that a point may lie on, ends included, and that have no vertex yet. Returns how many there
+ * are. *axis: the axis of the edge inside which the point lies; -1: it is on a node; -2: it is on no line of the
+ * lattice. */
 static int compare_candidates(
   compare_state* state, const double point[3], int64_t candidates[COMPARE_CANDIDATES], int* axis)
 {
@@ -326,8 +326,8 @@ static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
   return value ? *value : -1;
 }
 
-/* Checks that every segment of the oracle's is a side of one triangle for each cell that has the segment, in the same
- * direction. */
+/* Checks that every segment that the oracle found is a side of one triangle for each cell that has the segment, in the
+ * same direction. */
 static void compare_segments(compare_state* state, oracle_map* wanted, oracle_map* sides)
 {
   const oracle_lattice* lattice = &state->reference->lattice;
@@ -384,7 +384,7 @@ static void compare_boundary(compare_state* state, oracle_map* wanted)
     int explained = a < 0 && b < 0;
     if (a >= 0 && b >= 0)
     {
-      /* If rounding may join the face either way, both cells at it join it in the same way. */
+      /* Rounding may decide how a face is joined, but both of its cells join it in the same way. */
       const oracle_lattice* lattice = &state->reference->lattice;
       const int64_t either = compare_pair(&lattice->either, a, b);
       const int64_t cells =

@@ -42,15 +42,13 @@ double compare_wall_margin(const compare_state* state, const oracle_sample* samp
 double compare_fluid_margin(const compare_state* state, const oracle_sample* sample);
 double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
-/* Returns whether trimming cuts away any of the places on an edge at which the field crosses iso.
- * */
+/* Returns whether trimming cuts away any of the places where the field crosses iso on an edge. */
 int compare_rightly_trimmed(
   const compare_state* state, const double start[3], int axis, double length);
 /* Keeps the description of the first fault. */
 void compare_note(compare_state* state, const char* format, ...);
 
-/* ---- oracle_compare_edges.c: which edge each vertex lies on, which edges lack one, how triangles join the vertices
- * ---- */
+/* ---- oracle_compare_edges.c: the edge of each vertex, edges without a vertex, and sides of triangles ---- */
 
 /* Counts, for each component, the edges with a vertex and the edges without one. */
 void compare_edges(compare_state* state, int64_t* present, int64_t* absent);

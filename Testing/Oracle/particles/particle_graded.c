@@ -46,8 +46,7 @@ particle_set particle_set_drops(double ratio)
   const int drops = 5;
   for (int drop = 0; drop < drops; ++drop)
   {
-    /* Each drop lies beside the drop before it, which is larger, so close that their weights
-     * overlap. */
+    /* Each drop lies beside a larger one, made before it. Their weights overlap. */
     const double radius = pow(ratio, -(double)drop / (drops - 1));
     const double before = drop > 0 ? pow(ratio, -(double)(drop - 1) / (drops - 1)) : 0.0;
     const double turn = 0.7 * drop;

@@ -196,8 +196,7 @@ double mcor_w_of(mcor_sph_kernel kernel, double q);
 /* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. most_fluid: the
  * most samples of fluid; fewer take less time. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
-/* The most fluid particles whose neighbours are counted while all particles are measured; each is a
- * bit of a mask. */
+/* The most fluid particles whose neighbours are counted while all particles are measured. */
 #define MCOR_WATCHED 32
 
 /* Hashes a position: particles with the least hashes stand for all. The second function adds a

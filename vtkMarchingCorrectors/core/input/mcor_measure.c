@@ -19,13 +19,8 @@
  * neighbours, spacing, filled and h_median. If the watched particles lie in a tilted plane, it also
  * finds whether all other particles lie in this plane. */
 
-#define MCOR_WATCH_CELLS 64
 typedef struct mcor_watch
 {
-  /* Each axis is divided into intervals. reached: for each interval, which watched particles may
-   * reach it, bit s for particle s. The two outermost intervals are reached by none. */
-  double low[3], per_length[3];
-  uint32_t reached[3][MCOR_WATCH_CELLS];
   int count;
   const mcor_sample* sample;
   double support;
@@ -36,14 +31,6 @@ typedef struct mcor_watch
    * side. */
   double beyond[MCOR_SLICES][2];
 } mcor_watch;
-
-/* Returns the interval that holds x. */
-static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
-{
-  const double cell = (x - watch->low[axis]) * watch->per_length[axis];
-  const double above = cell > 0 ? cell : 0;
-  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
-}
 
 /* ---- A plane that is tilted in space ---- */
 
@@ -92,55 +79,40 @@ static bool mcor_has_normal(const mcor_watch* watch)
 
 /* Counts, for each watched particle, the neighbours in a chunk, and updates its distances to other
  * particles. low, high: the bounds of the chunk's positions. */
-static void mcor_watch_positions(
+MCOR_VECTOR_LOOPS static void mcor_watch_positions(
   mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   const double(*x)[MCOR_CHUNK] = chunk->x;
   double* beyond = watch->beyond[slice];
   const int count = chunk->count;
-  uint32_t any = UINT32_MAX, reached[MCOR_CHUNK]; /* bits: the samples that may reach the chunk,
-                                                   * each particle */
   for (int i = 0; i < count && mcor_has_normal(watch); ++i)
   {
     const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  for (int a = 0; a < 3; ++a)
+  for (int s = 0; s < watch->count; ++s)
   {
-    const int last = mcor_watch_cell(watch, a, high[a]);
-    uint32_t along = 0;
-    for (int c = mcor_watch_cell(watch, a, low[a]); c <= last; ++c)
+    const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
+    double square[MCOR_CHUNK], *nearest = &watch->nearest[slice][s];
+    int64_t neighbours = 0;
+    bool is_near = true; /* whether the sample may reach the chunk */
+    for (int a = 0; a < 3; ++a)
     {
-      along |= watch->reached[a][c];
+      is_near = is_near && low[a] - at[a] < reach && at[a] - high[a] < reach;
     }
-    any &= along;
-  }
-  for (int a = 0; a < 3 && any; ++a)
-  {
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < (is_near ? count : 0); ++i)
     {
-      const uint32_t along = watch->reached[a][mcor_watch_cell(watch, a, x[a][i])];
-      reached[i] = a > 0 ? reached[i] & along : along;
-    }
-  }
-  for (int i = 0; i < (any ? count : 0); ++i)
-  {
-    uint32_t bits = reached[i];
-    for (int s = 0; bits; ++s, bits >>= 1)
-    {
-      if (!(bits & 1))
-      {
-        continue;
-      }
-      const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
       const double dx = x[0][i] - at[0], dy = x[1][i] - at[1], dz = x[2][i] - at[2];
-      const double square = dx * dx + dy * dy + dz * dz;
-      double* nearest = &watch->nearest[slice][s];
-      watch->neighbours[slice][s] += square < reach * reach;
-      *nearest = square > 0 && square < *nearest ? square : *nearest;
+      square[i] = dx * dx + dy * dy + dz * dz;
+      neighbours += square[i] < reach * reach ? 1 : 0;
     }
+    for (int i = 0; i < (neighbours > 0 ? count : 0); ++i)
+    {
+      *nearest = square[i] > 0 && square[i] < *nearest ? square[i] : *nearest;
+    }
+    watch->neighbours[slice][s] += neighbours;
   }
 }
 
@@ -199,28 +171,6 @@ static void mcor_begin_watch(const mcor_context* context, mcor_watch* watch)
   *watch = (mcor_watch){ .sample = fluid->of,
     .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
     .support = mcor_support_factor(context->run.options->sph_kernel) };
-  for (int a = 0; a < 3; ++a)
-  {
-    double low = DBL_MAX, high = -DBL_MAX;
-    for (int s = 0; s < watch->count; ++s)
-    {
-      const double reach = watch->support * watch->sample[s].h;
-      low = fmin(low, watch->sample[s].x[a] - reach);
-      high = fmax(high, watch->sample[s].x[a] + reach);
-    }
-    const double cell = (high - low) / (MCOR_WATCH_CELLS - 3);
-    watch->low[a] = low - cell;
-    watch->per_length[a] = cell > 0 ? 1 / cell : 0;
-    for (int s = 0; s < watch->count; ++s)
-    {
-      const double x = watch->sample[s].x[a], reach = watch->support * watch->sample[s].h;
-      const int last = mcor_watch_cell(watch, a, x + reach);
-      for (int c = mcor_watch_cell(watch, a, x - reach); c <= last; ++c)
-      {
-        watch->reached[a][c] |= UINT32_C(1) << s;
-      }
-    }
-  }
   for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
   {
     watch->nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;

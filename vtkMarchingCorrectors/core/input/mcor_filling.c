@@ -17,17 +17,11 @@
 /* The densities of a liquid differ by at most this factor, even if they are low at its surface. */
 #define MCOR_LIQUID_RANGE 2.0
 
-/* least: the least x, y, z, smoothing length and density of the fluid, then minus the greatest of
- * each, so that one reduction finds all. counts: the numbers of fluid particles and of solids. */
-typedef struct mcor_filling
+/* Finds the ranges of x, y, z, smoothing length and density over the fluid and, as sums, the numbers
+ * of fluid particles and of solids. */
+static mcor_findings mcor_measure_filling(const mcor_input* input)
 {
-  double least[10];
-  int64_t counts[2];
-} mcor_filling;
-
-static mcor_filling mcor_measure_filling(const mcor_input* input)
-{
-  mcor_filling found = { .counts = { input->solid ? 0 : input->count } };
+  mcor_findings found = mcor_no_findings();
   const mcor_array positions = mcor_positions_of(input);
   for (int k = 0; k < 5; ++k)
   {
@@ -37,13 +31,13 @@ static mcor_filling mcor_measure_filling(const mcor_input* input)
     double range[2];
     mcor_find_range(
       NULL, array, input->solid, MCOR_SKIP_SOLIDS, input->count, k < 3 ? k : 0, range);
-    found.least[k] = range[0];
-    found.least[5 + k] = -range[1];
+    mcor_add_range(&found, k, range[0], range[1]);
   }
+  found.sums[0] = input->solid ? 0 : input->count;
   for (int64_t i = 0; i < input->count && input->solid; ++i)
   {
-    found.counts[0] += !input->solid[i];
-    found.counts[1] += input->solid[i] && input->solid[i] != MCOR_ABSENT;
+    found.sums[0] += !input->solid[i];
+    found.sums[1] += input->solid[i] && input->solid[i] != MCOR_ABSENT;
   }
   return found;
 }
@@ -53,7 +47,6 @@ typedef struct mcor_filling_job
 {
   const mcor_input* input;
   const double* low; /* the lower corner of the fluid's bounds */
-  double length;     /* the smoothing length of all particles; 0: they have their own */
   double size;
   int cells[3], all;
   uint8_t* marks; /* [MCOR_SLICES][all] */
@@ -63,16 +56,12 @@ static void mcor_mark_filling(void* data, int slice, int64_t first, int64_t last
 {
   const mcor_filling_job* job = data;
   const mcor_input* input = job->input;
-  const mcor_array constant = { .constant = job->length }, positions = mcor_positions_of(input);
   uint8_t* marks = job->marks + (size_t)slice * (size_t)job->all;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
   for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      mcor_read_array(&positions, first, count, a, x[a]);
-    }
-    mcor_read_array(job->length > 0 ? &constant : &input->smoothing_length, first, count, 0, h);
+    mcor_read_positions(input, first, count, x);
+    mcor_read_array(&input->smoothing_length, first, count, 0, h);
     for (int i = 0; i < count; ++i)
     {
       int from[3], to[3];
@@ -96,36 +85,38 @@ static void mcor_mark_filling(void* data, int slice, int64_t first, int64_t last
 }
 
 static bool mcor_fills_bounds(
-  const mcor_input* input, const mcor_ranks* ranks, const mcor_filling* of)
+  mcor_context* context, const mcor_input* input, const mcor_findings* of)
 {
   double longest = 0, filled = 1;
   int axes = 0;
   for (int a = 0; a < 3; ++a)
   {
-    const double side = -of->least[5 + a] - of->least[a];
+    const double side = of->most[a] - of->least[a];
     longest = fmax(longest, side);
     filled *= side > 0 ? side : 1;
     axes += side > 0;
   }
-  const bool is_known =
-    !input->estimate_smoothing_length && mcor_is_given(&input->smoothing_length);
-  mcor_filling_job job = { .input = input,
-    .low = of->least,
-    .length = is_known ? 0 : pow(filled / (double)of->counts[0], 1.0 / axes),
-    .size = longest / MCOR_FILLING_CELLS,
-    .all = 1 };
+  mcor_input own = *input;
+  own.positions.components = 3; /* whatever the caller has set */
+  if (input->estimate_smoothing_length || !mcor_is_given(&input->smoothing_length))
+  {
+    own.smoothing_length =
+      (mcor_array){ .constant = pow(filled / (double)of->sums[0], 1.0 / axes) };
+  }
+  mcor_filling_job job = {
+    .input = &own, .low = of->least, .size = longest / MCOR_FILLING_CELLS, .all = 1
+  };
   if (!(job.size > 0) || !isfinite(job.size))
   {
     return false;
   }
   for (int a = 0; a < 3; ++a)
   {
-    job.cells[a] = (int)fmax(1, ceil((-of->least[5 + a] - of->least[a]) / job.size));
+    job.cells[a] = (int)fmax(1, ceil((of->most[a] - of->least[a]) / job.size));
     job.all *= job.cells[a];
   }
-  int64_t* reached = calloc((size_t)job.all, sizeof *reached);
+  int64_t *reached = calloc((size_t)job.all, sizeof *reached), count = 0;
   job.marks = calloc((size_t)job.all, MCOR_SLICES);
-  int64_t count = 0;
   if (reached && job.marks)
   {
     const int slices =
@@ -134,8 +125,8 @@ static bool mcor_fills_bounds(
     {
       reached[i % job.all] |= job.marks[i];
     }
-    const bool failed = ranks && ranks->reduce_counts(ranks->user, MCOR_GREATEST, reached, job.all);
-    for (int i = 0; i < job.all && !failed; ++i)
+    const bool is_heard = mcor_reduce_counts(context, MCOR_GREATEST, reached, job.all) == MCOR_OK;
+    for (int i = 0; i < job.all && is_heard; ++i)
     {
       count += reached[i];
     }
@@ -147,16 +138,18 @@ static bool mcor_fills_bounds(
 
 int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks)
 {
-  mcor_filling found = mcor_measure_filling(input);
-  if (ranks &&
-    (ranks->reduce_counts(ranks->user, MCOR_SUM_OF, found.counts, 2) ||
-      ranks->reduce_doubles(ranks->user, MCOR_LEAST, found.least, 10)))
+  const mcor_options options = { .ranks = ranks };
+  mcor_context* context = mcor_make_bare_context(&options);
+  mcor_findings found = mcor_measure_filling(input);
+  bool has = true; /* also if memory ran out, or another rank failed */
+  if (context && mcor_reduce_findings(context, &found) == MCOR_OK)
   {
-    return 1; /* another rank failed */
+    const double rho = found.least[4];
+    const bool is_liquid =
+      rho > 0 && found.most[4] <= MCOR_LIQUID_RANGE * rho && found.most[3] == found.least[3];
+    has = found.sums[1] > 0 || found.sums[0] == 0 || is_liquid ||
+      !mcor_fills_bounds(context, input, &found);
   }
-  const double h = found.least[3], rho = found.least[4];
-  const bool is_liquid =
-    rho > 0 && -found.least[9] <= MCOR_LIQUID_RANGE * rho && -found.least[8] == h;
-  return found.counts[1] > 0 || found.counts[0] == 0 || is_liquid ||
-    !mcor_fills_bounds(input, ranks, &found);
+  mcor_free_bare_context(context);
+  return has;
 }

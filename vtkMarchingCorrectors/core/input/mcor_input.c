@@ -210,64 +210,48 @@ double mcor_largest(
 
 typedef struct mcor_legal_job
 {
-  const mcor_array* array;
-  bool positive;
-  bool illegal[MCOR_SLICES];
+  mcor_array elements; /* the array, as if it had one component */
+  int components;
+  const uint8_t* solid;
+  mcor_skip skip;
+  double least; /* the least legal value */
+  mcor_findings slices[MCOR_SLICES]; /* `first`: the first particle with an illegal value */
 } mcor_legal_job;
 
-/* Compilers vectorise this loop. */
-#define MCOR_TEST_ALL(type, most)                                                                  \
-  for (int64_t i = first; i < last; ++i)                                                           \
-  {                                                                                                \
-    const type x = ((const type*)job->array->data)[i];                                             \
-    illegal |= !((x <= most) & (positive ? x > 0 : x >= -most));                                   \
-  }
-
-MCOR_VECTOR_LOOPS static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_legal_job* job = data;
-  const bool positive = job->positive;
-  int illegal = 0;
-  if (job->array->type == MCOR_FLOAT64)
+  mcor_findings found = mcor_no_findings();
+  double x[MCOR_CHUNK];
+  for (int count; (count = mcor_chunk_of(last - first)) > 0 && found.first == INT64_MAX;
+       first += count)
   {
-    MCOR_TEST_ALL(double, DBL_MAX)
+    mcor_read_array(&job->elements, first, count, 0, x);
+    const bool are_legal = mcor_is_all_within(x, count, job->least, DBL_MAX);
+    for (int i = are_legal ? count : 0; i < count && found.first == INT64_MAX; ++i)
+    {
+      const int64_t particle = (first + i) / job->components;
+      const bool is_legal = x[i] >= job->least && x[i] <= DBL_MAX;
+      found.first =
+        is_legal || mcor_is_skipped(job->solid, job->skip, particle) ? INT64_MAX : particle;
+    }
   }
-  else
-  {
-    MCOR_TEST_ALL(float, FLT_MAX)
-  }
-  job->illegal[slice] = illegal;
+  job->slices[slice] = found;
 }
 
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive)
 {
-  const int components = mcor_components(array);
-  mcor_legal_job job = { .array = array, .positive = positive };
-  const int slices = array->data
-    ? mcor_parallel_for(context, count * components, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job)
-    : 0;
-  bool illegal = !array->data;
-  for (int s = 0; s < slices; ++s)
-  {
-    illegal = illegal || job.illegal[s];
-  }
-  if (!illegal)
-  {
-    return -1;
-  }
-  for (int64_t i = 0; i < (array->data ? count : 1); ++i)
-  {
-    for (int c = 0; c < components && !(array->data && mcor_is_skipped(solid, skip, i)); ++c)
-    {
-      const double x = mcor_array_at(array, i, c);
-      if (!isfinite(x) || (positive && !(x > 0)))
-      {
-        return i;
-      }
-    }
-  }
-  return -1;
+  mcor_legal_job job = { .elements = *array,
+    .components = array->data ? mcor_components(array) : 1,
+    .solid = array->data ? solid : NULL, /* a constant holds for all particles */
+    .skip = skip,
+    .least = positive ? DBL_TRUE_MIN : -DBL_MAX };
+  job.elements.components = 1;
+  const int slices = mcor_parallel_for(
+    context, array->data ? count * job.components : 1, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
+  const int64_t first = mcor_merge_findings(job.slices, slices).first;
+  return first < INT64_MAX ? first : -1;
 }
 
 /* Returns the exponent of the least power of 2 above the absolute values of all components of

@@ -67,9 +67,8 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Counts values by bin; the sums over all slices and ranks end in slice 0. The context may be
- * NULL. */
-static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks, mcor_bin_job* job)
+/* Counts values by bin; the sums over all slices and ranks end in slice 0. */
+static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
 {
   int slices;
   mcor_fill_bins(job, 0, 0, 0); /* no slice fills the bins if there are no particles */
@@ -82,18 +81,16 @@ static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks
     job->least[0][b] = fmin(job->least[0][b], job->least[s][b]);
     job->minus[0][b] = fmin(job->minus[0][b], job->minus[s][b]);
   }
-  const int failed = ranks &&
-    (ranks->reduce_counts(ranks->user, MCOR_SUM_OF, job->count[0], MCOR_BINS) ||
-      ranks->reduce_doubles(ranks->user, MCOR_LEAST, job->least[0], MCOR_BINS) ||
-      ranks->reduce_doubles(ranks->user, MCOR_LEAST, job->minus[0], MCOR_BINS));
-  return context ? mcor_heard(context, failed) : failed ? MCOR_CANCELLED : MCOR_OK;
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, job->count[0], MCOR_BINS));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, job->least[0], MCOR_BINS));
+  return mcor_reduce_doubles(context, MCOR_LEAST, job->minus[0], MCOR_BINS);
 }
 
 /* Narrows the bins' range to the bin that holds one value, again and again, until this bin has
  * fewer than `many` values. number: the value's index in ascending order. A bin's range ends at its
  * least and its greatest value, so that a huge outlier does not move the median. */
-static mcor_status mcor_narrow_bins(mcor_context* context, const mcor_ranks* ranks,
-  mcor_bin_job* job, int passes, int64_t number, int64_t many)
+static mcor_status mcor_narrow_bins(
+  mcor_context* context, mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {
   int64_t count = many;
   for (int pass = 0; pass < passes && count >= many; ++pass)
@@ -102,7 +99,7 @@ static mcor_status mcor_narrow_bins(mcor_context* context, const mcor_ranks* ran
     {
       break;
     }
-    MCOR_TRY(mcor_make_bins(context, ranks, job));
+    MCOR_TRY(mcor_make_bins(context, job));
     int b = 0;
     for (; b < MCOR_BINS - 1 && number >= job->count[0][b]; ++b)
     {
@@ -127,8 +124,8 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
   job->input = input;
   job->low = m->scalar_min;
   job->high = m->scalar_max;
-  const mcor_status status = mcor_narrow_bins(context, context->run.options->ranks, job,
-    MCOR_MEDIAN_PASSES, (m->fluid_count - 1) / 2, m->fluid_count / 16);
+  const mcor_status status = mcor_narrow_bins(
+    context, job, MCOR_MEDIAN_PASSES, (m->fluid_count - 1) / 2, m->fluid_count / 16);
   *median = 0.5 * job->low + 0.5 * job->high;
   free(job);
   return status;
@@ -137,13 +134,13 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
 /* ---- An iso value ---- */
 
 static bool mcor_choose_iso(
-  mcor_bin_job* job, const mcor_ranks* ranks, double range[2], double* iso_value)
+  mcor_context* context, mcor_bin_job* job, double range[2], double* iso_value)
 {
   double found[2] = { INFINITY, -INFINITY }, value[5];
   int64_t count = 0;
   job->low = -INFINITY; /* the last bin holds all of the values */
   job->high = INFINITY;
-  if (mcor_make_bins(NULL, ranks, job) != MCOR_OK)
+  if (mcor_make_bins(context, job) != MCOR_OK)
   {
     return false;
   }
@@ -160,7 +157,7 @@ static bool mcor_choose_iso(
   {
     job->low = found[0];
     job->high = found[1];
-    if (count == 0 || mcor_narrow_bins(NULL, ranks, job, MCOR_ISO_PASSES, numbers[i], 1) != MCOR_OK)
+    if (count == 0 || mcor_narrow_bins(context, job, MCOR_ISO_PASSES, numbers[i], 1) != MCOR_OK)
     {
       return false;
     }
@@ -186,16 +183,19 @@ static bool mcor_choose_iso(
 int mcor_find_iso_value(
   const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value)
 {
+  const mcor_options options = { .ranks = ranks };
+  mcor_context* context = mcor_make_bare_context(&options);
   mcor_bin_job* job = malloc(sizeof *job);
-  if (!job)
+  bool found = false;
+  if (context && job)
   {
-    return 0;
+    job->input = input;
+    int64_t wrong = input->count > 0 && mcor_check_scalar_form(context, input) != MCOR_OK;
+    found = mcor_reduce_counts(context, MCOR_SUM_OF, &wrong, 1) == MCOR_OK && wrong == 0 &&
+      mcor_choose_iso(context, job, range, iso_value);
   }
-  job->input = input;
-  int64_t wrong = input->count > 0 && mcor_check_scalar_form(NULL, input) != MCOR_OK;
-  const bool found = (!ranks || ranks->reduce_counts(ranks->user, MCOR_SUM_OF, &wrong, 1) == 0) &&
-    wrong == 0 && mcor_choose_iso(job, ranks, range, iso_value);
   free(job);
+  mcor_free_bare_context(context);
   return found;
 }
 

@@ -90,21 +90,6 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-/* Joins a list with the lists of all ranks. */
-static mcor_status mcor_join_samples(mcor_context* context, mcor_sample_list* list)
-{
-  const mcor_sample_list own = *list;
-  const void* all = NULL;
-  int64_t count = 0;
-  MCOR_TRY(mcor_gather_records(context, own.of, own.count, sizeof *own.of, &all, &count));
-  list->count = 0;
-  for (int64_t i = 0; i < count; ++i)
-  {
-    mcor_add_sample(list, (const mcor_sample*)all + i);
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid)
 {
   mcor_sampling* job = calloc(1, sizeof *job);
@@ -120,15 +105,23 @@ mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, 
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, job, &slices);
   for (int k = 0; k < 2; ++k)
   {
-    context->samples[k] = job->found[0][k];
+    mcor_sample_list *own = &job->found[0][k], *list = &context->samples[k];
+    const void* all = NULL;
+    int64_t count = 0;
     for (int s = 1; s < slices; ++s)
     {
       for (int i = 0; i < job->found[s][k].count; ++i)
       {
-        mcor_add_sample(&context->samples[k], &job->found[s][k].of[i]);
+        mcor_add_sample(own, &job->found[s][k].of[i]);
       }
     }
-    MCOR_THEN(status, mcor_join_samples(context, &context->samples[k]));
+    MCOR_THEN(
+      status, mcor_gather_records(context, own->of, own->count, sizeof *own->of, &all, &count));
+    *list = (mcor_sample_list){ .most = own->most };
+    for (int64_t i = 0; i < count; ++i)
+    {
+      mcor_add_sample(list, (const mcor_sample*)all + i);
+    }
   }
   free(job);
   return status;

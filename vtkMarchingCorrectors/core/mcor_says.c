@@ -87,26 +87,18 @@ int mcor_label_word(void* user, const char* name, const char* value, char* word,
   return *words != 0;
 }
 
-/* Reads the slot {name} or {name value} at the beginning of the text. Writes its name and, behind
- * it, its value (*value); *end: its closing brace. Returns false if the text does not begin with a
- * slot. */
-static bool mcor_read_slot(const char* text, const char** end, char* name, const char** value)
+/* Reads the slot {name} or {name value} at the beginning of the text. Returns the slot's length; 0:
+ * the text does not begin with a slot. */
+static int mcor_read_slot(const char* text, char name[128], char value[256])
 {
-  size_t length = strspn(text + 1, "abcdefghijklmnopqrstuvwxyz_");
-  *end = text[0] == '{' ? strchr(text, '}') : NULL;
-  if (!*end || length == 0 || length >= MCOR_WORD_SIZE / 2 ||
-    (text[1 + length] != ' ' && text[1 + length] != '}') || *end - text >= MCOR_WORD_SIZE)
+#define MCOR_SLOT_NAME "{%127[abcdefghijklmnopqrstuvwxyz_]"
+  int length = 0;
+  *value = 0;
+  if (*text == '{' && sscanf(text, MCOR_SLOT_NAME "}%n", name, &length) == 1 && length == 0)
   {
-    return false;
+    sscanf(text, MCOR_SLOT_NAME "%*1[ ]%255[^}]}%n", name, value, &length);
   }
-  memcpy(name, text + 1, length);
-  name[length] = 0;
-  const char* from = text + 1 + length + (text[1 + length] == ' ');
-  char* copy = name + length + 1;
-  memcpy(copy, from, (size_t)(*end - from));
-  copy[*end - from] = 0;
-  *value = copy;
-  return true;
+  return length;
 }
 
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size)
@@ -115,9 +107,9 @@ size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, s
   word = word ? word : mcor_member_word;
   while (*text)
   {
-    const char *end, *value;
-    char name[2 * MCOR_WORD_SIZE], filled[MCOR_WORD_SIZE] = "";
-    const bool is_slot = mcor_read_slot(text, &end, name, &value) &&
+    char name[128], value[256], filled[MCOR_WORD_SIZE] = "";
+    const int slot = mcor_read_slot(text, name, value);
+    const bool is_slot = slot > 0 &&
       (word(user, name, value, filled, sizeof filled) ||
         mcor_member_word(NULL, name, value, filled, sizeof filled));
     const char* piece = is_slot ? filled : text;
@@ -129,7 +121,7 @@ size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, s
         out[used] = piece[i];
       }
     }
-    text = is_slot ? end + 1 : text + 1;
+    text += is_slot ? slot : 1;
   }
   if (size > 0)
   {

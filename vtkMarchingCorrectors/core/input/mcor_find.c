@@ -9,18 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-void* mcor_find_memory(mcor_finder* f, size_t bytes)
+void* mcor_own(mcor_finder* f, void* memory)
 {
   mcor_found* found = f->found;
   void** more = realloc(found->own, ((size_t)found->own_count + 1) * sizeof *more);
-  void* memory = more ? malloc(bytes ? bytes : 1) : NULL;
   found->own = more ? more : found->own;
-  if (memory)
+  if (!memory || !more)
   {
-    found->own[found->own_count++] = memory;
+    f->lacks_memory = true;
+    free(memory);
+    return NULL;
   }
-  f->lacks_memory = f->lacks_memory || !memory;
-  return memory;
+  return found->own[found->own_count++] = memory;
+}
+
+void* mcor_find_memory(mcor_finder* f, size_t bytes)
+{
+  return mcor_own(f, malloc(bytes ? bytes : 1));
 }
 
 /* Keeps the first message that says what is wrong; frees later ones. Returns -1, no index. */
@@ -45,8 +50,7 @@ const char* mcor_names_of(mcor_finder* f)
     const char* name = f->arrays[i].name;
     list = mcor_append(list, "%s%s", name ? name : "", i + 1 < f->count ? ", " : ".");
   }
-  const char* names = mcor_keep_name(f, list);
-  free(list);
+  const char* names = mcor_own(f, list);
   return names ? names : "";
 }
 
@@ -57,8 +61,7 @@ static const mcor_named* mcor_named_of(const mcor_finder* f, int index)
 
 const char* mcor_keep_name(mcor_finder* f, const char* name)
 {
-  char* kept = name ? mcor_find_memory(f, strlen(name) + 1) : NULL;
-  return kept ? strcpy(kept, name) : NULL;
+  return name ? mcor_own(f, mcor_text("%s", name)) : NULL;
 }
 
 /* Writes element i of an array of floats or doubles. */
@@ -218,10 +221,9 @@ static int mcor_join_velocity(mcor_finder* f)
 /* Returns "mass array 'M'", or "mass" if the values have no name of their own. */
 static const char* mcor_called(mcor_finder* f, const char* words, const char* name)
 {
-  char* text = strcmp(words, name) == 0 ? NULL : mcor_text("%s array '%s'", words, name);
-  const char* kept = text ? mcor_keep_name(f, text) : words;
-  free(text);
-  return kept ? kept : words;
+  const char* called =
+    strcmp(words, name) == 0 ? words : mcor_own(f, mcor_text("%s array '%s'", words, name));
+  return called ? called : words;
 }
 
 /* Returns the index if the array exists and has numbers for all particles; else -1. */
@@ -297,18 +299,17 @@ static mcor_message mcor_no_length(mcor_finder* f)
     const mcor_array distances = mcor_view_of(f, spacing);
     mcor_find_range(NULL, &distances, NULL, MCOR_SKIP_ABSENT, count, 0, range);
   }
-  char* usual = range[0] > 0 && range[0] == range[1]
-    ? mcor_text(" By '%s', particles are %g apart: %g is usual.", f->arrays[spacing].name, range[0],
-        1.3 * range[0])
+  const char* usual = range[0] > 0 && range[0] == range[1]
+    ? mcor_own(f,
+        mcor_text(" By '%s', particles are %g apart: %g is usual.", f->arrays[spacing].name,
+          range[0], 1.3 * range[0]))
     : NULL;
-  const mcor_message message = mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
+  return mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
     has_rhop && has_idp
       ? " DualSPHysics does not store it: it is coefh x sqrt(3) x dp (in the program --coefh "
         "and --dp)."
       : "",
     usual ? usual : "", mcor_names_of(f));
-  free(usual);
-  return message;
 }
 
 /* Finds the value or the array that is given for a quantity, else an array with a usual name. */
@@ -607,18 +608,17 @@ static void mcor_name_scalar(mcor_finder* f)
                    *dot = &found->views[MCOR_ROLE_SCALAR_DOT];
   const int component = found->input.scalar_component;
   const char *label = f->request->label, *name = scalar->name ? scalar->name : "";
-  found->scalar_name = found->needs_densities ? mcor_text(MCOR_SUMMED)
-    : dot->data               ? mcor_text("%s_Dot_%s", name, dot->name ? dot->name : "")
-    : scalar->components <= 1 ? mcor_text("%s", name)
-    : component < 0           ? mcor_text("%s_Magnitude", name)
-    : label                   ? mcor_text("%s_%s", name, label)
-    : scalar->components <= 3 ? mcor_text("%s_%c", name, "XYZ"[component])
-                              : mcor_text("%s_%d", name, component);
-  const char* full = found->scalar_name;
+  const char* full = found->scalar_name = mcor_own(f,
+    found->needs_densities      ? mcor_text(MCOR_SUMMED)
+      : dot->data               ? mcor_text("%s_Dot_%s", name, dot->name ? dot->name : "")
+      : scalar->components <= 1 ? mcor_text("%s", name)
+      : component < 0           ? mcor_text("%s_Magnitude", name)
+      : label                   ? mcor_text("%s_%s", name, label)
+      : scalar->components <= 3 ? mcor_text("%s_%c", name, "XYZ"[component])
+                                : mcor_text("%s_%d", name, component));
   found->iso_value_name =
     full && *full && !f->request->filled && !mcor_is_listed(f->request->taken, full) ? full
                                                                                      : "IsoValue";
-  f->lacks_memory = f->lacks_memory || !full;
 }
 
 /* Returns whether the surface gets an array of the particles. Ghost marks are left out, because
@@ -732,10 +732,8 @@ void mcor_free_found(mcor_found* found)
   {
     free(found->own);
     mcor_free_message(&found->error);
-    free(found->no_fluid);
     mcor_free_message(&found->unused_type);
     mcor_free_message(&found->unused);
-    free(found->scalar_name);
     *found = (mcor_found){ 0 };
   }
 }

@@ -114,7 +114,7 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
   {
     return mcor_say(MCOR_SAY(WALL_BLOCKS_UNUSED), MCOR_WALL_BLOCK);
   }
-  double fluid;
+  double fluid = 0;
   char *list = mcor_text("%s", ""), seems[50] = "";
   for (int k = 0; k < count; ++k)
   {
@@ -272,9 +272,10 @@ void mcor_mark_particles(mcor_finder* f)
   }
   if (found->fluid_count == 0)
   {
-    found->no_fluid = some && fluid
-      ? mcor_text("No particle has %s = %g", fluid->name ? fluid->name : "", found->fluid_value)
-      : mcor_describe_choice(f);
+    found->no_fluid = mcor_own(f,
+      some && fluid
+        ? mcor_text("No particle has %s = %g", fluid->name ? fluid->name : "", found->fluid_value)
+        : mcor_describe_choice(f));
   }
 }
 

@@ -35,6 +35,8 @@ typedef struct mcor_finder
   bool lacks_memory;
 } mcor_finder;
 
+/* Hands memory to the result, which frees it; returns NULL if memory ran out. */
+void* mcor_own(mcor_finder* f, void* memory);
 /* Allocates memory that belongs to the result. */
 void* mcor_find_memory(mcor_finder* f, size_t bytes);
 

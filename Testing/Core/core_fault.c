@@ -221,7 +221,7 @@ static cl_kernel try_clCreateKernel(cl_program program, const char* name, cl_int
     : (__real_mcor_driver(program)->clCreateKernel)(program, name, error);
 }
 
-/* Returns the driver's functions, those above in place of its own. */
+/* Returns the driver's functions, with the try_ functions above in place of the driver's own. */
 const cl_icd_dispatch* __wrap_mcor_driver(const void* object);
 const cl_icd_dispatch* __wrap_mcor_driver(const void* object)
 {

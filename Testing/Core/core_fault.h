@@ -3,11 +3,11 @@
 #ifndef core_fault_h
 #define core_fault_h
 
-/* Lets OpenCL calls and allocations of the host fail when a test wants it: the linker puts these functions in front of
- * the real ones (CMakeLists.txt). With CORE_FILL=BYTE in the environment new buffers are filled with this byte, so that
- * reading unwritten memory changes results. CORE_SHADOWS is for oclgrind --uninitialized, which believes that a buffer
- * is as large as the host's last write, and that a new buffer is the one released before: with CORE_SHADOWS no buffer
- * is released, and each write by the host is repeated for the whole buffer. */
+/* Lets OpenCL calls and allocations of the host fail when a test wants it: the linker puts functions of core_fault.c in
+ * front of the real ones (CMakeLists.txt). With CORE_FILL=BYTE in the environment new buffers are filled with this
+ * byte, so that reading unwritten memory changes results. CORE_SHADOWS is for oclgrind --uninitialized, which believes
+ * that a buffer is as large as the host's last write, and that a new buffer is the one released before: with
+ * CORE_SHADOWS no buffer is released, and each write by the host is repeated for the whole buffer. */
 
 #include "core_fixture.h"
 

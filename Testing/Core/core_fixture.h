@@ -102,8 +102,8 @@ particle_set core_make_block(
 /* Makes a block of n^3 particles with spacing 1, a sheet above it, a thread and four lone drops. Particles are
  * displaced by up to half of `jitter`; they have volume 1 and a rough scalar. */
 particle_set core_make_splash(int n, double jitter, uint64_t seed);
-/* Makes a shell of particles around a hole. The particles' size grows with the distance from the hole's middle, from 1
- * to `ratio`; a wedge is left out. The scalar is the height. */
+/* Makes shells of particles with radii r from 1 to `ratio`, without a cone around the x axis. Their spacing is about r
+ * times `step`. The scalar is (z + 0.2 y) / r. */
 particle_set core_make_graded(double ratio, double step);
 
 /* Makes particles at random in a cube of edge `size`, with smoothing lengths in [h_min, h_max] (log-uniform) and

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Runs the smallest cases that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, box and period,
- * and a tank with all options in turn. Prints a hash of all result bits for same_bits.cmake, and writes the results for
- * bits.cmake. Other tests check that the results are right. Words on the command line choose cases by name. */
+/* Runs the smallest cases that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, projections,
+ * box and period, and a tank with all options in turn. Prints a hash of all result bits for same_bits.cmake, and writes
+ * the results for bits.cmake. Other tests check the results. The command line may name the cases to run. */
 
 #include "core_keep.h"
 #include "core_parts.h"

@@ -86,7 +86,7 @@ typedef struct compact_case
   mcor_topology topology;
   mcor_type precision;
   double period[6];
-  double share, sharp; /* upper limits: triangles / triangles of the plain contour; the
+  double share, sharp; /* upper limits: triangles / triangles without `compact`; the
                           share of triangles with an angle below 20 degrees */
 } compact_case;
 

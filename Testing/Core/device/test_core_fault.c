@@ -133,8 +133,7 @@ static const mcor_ranks alone = { .reduce_doubles = reduce_doubles,
   .reduce_counts = reduce_counts,
   .gather = gather };
 
-/* Does one rank's work: measures together with all ranks, then extracts the rank's box, with seeds that grow from box
- * to box. */
+/* Does one rank's work: measures together with all ranks, then extracts the rank's box. */
 static mcor_status extract_as_rank(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {

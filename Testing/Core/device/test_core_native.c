@@ -23,7 +23,7 @@ enum
   BYTES = ITEMS * ITEM_BYTES
 };
 
-/* Numbers for which implementations differ, as float and as double. */
+/* Numbers for which implementations may differ, used as float and as double. */
 static const float extremes[] = { 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, 1.5f, 2.5f, -2.5f, 1e-45f,
   -1e-45f, 1.17549435e-38f, 1.1754942e-38f, 3.4028235e38f, -3.4028235e38f, 8388607.5f, 16777217.0f,
   -0.49999997f, 0.49999997f, 1e10f, -1e10f, 0x1p-126f, 0x1p127f };
@@ -245,9 +245,8 @@ static void test_fork(void** state)
   assert_true(extract(context) == hash);
 }
 
-/* Limits the process's address space or threads, where some drivers would end the process. The built-in device must
- * work, named or by default, and a driver's device must be refused with a message. If the test may start any number of
- * threads, as root may, the limit of threads has no effect. */
+/* Limits the process's address space, where some drivers would end the process. The built-in device must work, named or
+ * by default, and a driver's device must be refused with a message. */
 static void test_little_room_for_drivers(void** state)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -148,8 +148,7 @@ static void test_several_at_once(void** state)
   }
 }
 
-/* If several particles are bad, the message names the first one, whichever thread finds one first.
- * */
+/* If several particles are bad, the message names the first one, whichever a thread finds first. */
 static void test_first_bad_particle(void** state)
 {
   CORE_SET set = core_make_block(40, 0.2, 3, core_ball);

@@ -8,8 +8,7 @@
 
 #define PI 3.14159265358979323846
 
-/* Makes a pool of particles at spacing 1. Its sides along x, y and z begin at 0 and are 24, 16 and 12 long; its top
- * slopes. */
+/* Makes a pool of particles at spacing 1: 24 long along x and 16 along y. Its top slopes from z = 10 to z = 13.6. */
 static particle_set make_pool(double jitter)
 {
   particle_set set = particle_set_make(24 * 16 * 14);
@@ -32,8 +31,8 @@ static particle_set make_pool(double jitter)
   return set;
 }
 
-/* Makes the middle slice of the pool as particles in a plane of constant x, y or z (axis). The slice's two coordinates
- * keep their order. */
+/* Returns one slice of the pool as particles in the plane where coordinate `axis` is 8. The other two coordinates are x
+ * and z of the pool, in this order. */
 static particle_set make_slice(int axis)
 {
   particle_set set = make_pool(0);
@@ -350,8 +349,7 @@ static void test_disc_at_the_surface(void** state)
     fabs(r.volume_flux - expected->volume_flux) < 1e-5, r.volume_flux, expected->volume_flux);
 }
 
-/* The section touches the fluid with one corner only, exactly at the level. The flux is 0, or a small number, not
- * NaN. */
+/* The section touches the fluid with one corner only, exactly at the level. Its area is 0 or small, not NaN. */
 static void test_corner_on_the_level(void** state)
 {
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };
@@ -369,8 +367,7 @@ static void test_corner_on_the_level(void** state)
   CORE_CHECK(level > 0.05 && level < 0.9 && r.area >= 0 && r.area < 1e-3, level, r.area);
 }
 
-/* The bits are the same for a section alone and among others, for particles that stay on the device or not, and from
- * any thread. */
+/* The bits are the same for a section alone and among others, for particles that stay on the device or not. */
 static void test_same_bits(void** state)
 {
   static const shape shapes[] = { { MCOR_SECTION_RECTANGLE, 3,

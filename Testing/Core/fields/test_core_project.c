@@ -535,8 +535,8 @@ static void test_bad_input(void** state)
     CORE_CHECK(status == cases[i].status && *mcor_last_error(*state), i, mcor_status_name(status));
     assert_true(!found.values && found.size[0] == 0);
   }
-  /* The image must be empty: without particles, in an empty box, of solids, and of absent
-   * particles. */
+  /* Solids alone give no image, with a period or without. No particles in a box give zeros. A particle that is not
+   * counted adds nothing. */
   CORE_SET set = core_make_block(3, 0.1, 2, core_slope);
   mcor_input input = input_of(&set);
   mcor_options options = project_options(MCOR_CUBIC_SPLINE);

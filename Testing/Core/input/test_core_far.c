@@ -198,8 +198,7 @@ static void test_measures(void** state)
   }
 }
 
-/* Returns the block's particles, followed by `far` particles at great distances that are otherwise like the block's
- * first one. */
+/* Returns the block's particles, followed by `far` particles at great distances, whose scalar is NaN. */
 static particle_set add_far(const particle_set* block, int far)
 {
   particle_set set = add_particles(block, far);
@@ -215,8 +214,7 @@ static particle_set add_far(const particle_set* block, int far)
   return set;
 }
 
-/* Checks that a few far particles are left out. At such a particle a scalar of NaN does not matter, but
- * mcor_check_input refuses it. */
+/* Checks that eight far particles are left out, with a warning, and that nine are an error. */
 static void test_few(void** state)
 {
   const double iso = 0.5;

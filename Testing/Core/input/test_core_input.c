@@ -474,8 +474,8 @@ static void test_computed_volumes(void** state)
   expect_good(*state);
 }
 
-/* Checks that lengths in any unit give the same surface, also with estimated smoothing lengths and
- * normals. */
+/* Checks that lengths in units from 2^-300 to 2^300 give the same surface, also with estimated smoothing lengths and
+ * normals, and that more extreme units are refused. */
 static void test_units_of_length(void** state)
 {
   const double units[] = { 1, 0x1p-300, 0x1p300, 0x1p-340, 0x1p340 };

@@ -120,8 +120,8 @@ static void test_view_ranks(void** state)
   assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
 }
 
-/* Checks that the suggested iso value is the median of the values, however they are distributed. Solids and values that
- * are not finite are left out. */
+/* Checks the suggested iso value: usually the median, but the middle of the range if many values are equal, and the
+ * logarithmic middle if values span decades. Solids and values that are not finite are left out. */
 static void test_iso_values(void** state)
 {
   enum

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the estimate of how long a run will be, worked out by hand, and the text on what a run
+/* Tests the estimate of how many cubes a run has, worked out by hand, and the text on what it
  * used. */
 
 #include "core_fixture.h"

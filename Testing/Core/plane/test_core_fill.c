@@ -422,7 +422,7 @@ static void test_period(void** state)
   CORE_CHECK(fabs(strip.area - 144) < 8, strip.area);
 }
 
-/* No bit depends on the kind of seeds, the order of particles, kept data, or the plane's axis. */
+/* No bit depends on the kind of seeds, the order of particles, or kept data. */
 static void test_bits(void** state)
 {
   const double isos[2] = { -3, 4 };

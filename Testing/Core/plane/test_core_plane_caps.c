@@ -221,7 +221,7 @@ static void test_trimmed_sides(void** state)
   }
 }
 
-/* Each of several iso values has caps of its own, and boxes side by side make the caps of the whole. */
+/* Each of several iso values has caps of its own. No bit depends on the order of the particles. */
 static void test_values_and_order(void** state)
 {
   const double isos[2] = { 0.9, 0.6 };

@@ -164,7 +164,7 @@ static void test_adaptive_lines(void** state)
 }
 
 /* Checks squares of one size and of several in periods, and in boxes of a period. The reference has all images as
- * particles, but no caps. */
+ * particles. */
 static void test_periods(void** state)
 {
   const double period = 32, ends[2] = { -16, 16 };

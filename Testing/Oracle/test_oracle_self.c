@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Checks the oracle's formulas against values worked out by hand, and its mesh checker with planted faults. The
- * oracle's lattice and sums share no code with the library's, so the other tests check these two against each other. */
+ * oracle's lattice and sums share no code with the library; the other tests compare them with the library's. */
 
 #include "oracle_check.h"
 #include "oracle_compare.h"
@@ -92,8 +92,7 @@ static void test_kernel_values(void)
 }
 
 /* Checks volumes worked out by hand. For the cubic spline pi W h^3 is 1 at q = 0, and 1/4 at q = 1, where its slope is
- * -3/4; its variance is 3/10 in space and 31/98 in the plane. Solids replace missing fluid on a side, as far as needed.
- * */
+ * -3/4; its variance is 3/10 in space, 31/98 in the plane. Solids replace fluid that is missing on a side. */
 static void test_one_sided_volumes(void)
 {
   static const struct

@@ -299,8 +299,7 @@ static void compare_missing(compare_state* state, int64_t* present, int64_t* abs
 
 /* ---- faces ---- */
 
-/* Adds `more` to the count of segments or triangle sides from one edge to another. Returns the
- * count. */
+/* Returns how many segments or triangle sides lead from one edge to another. more: counts one more first. */
 static int64_t compare_count(oracle_map* map, int64_t from, int64_t to, int more)
 {
   const int64_t at[3] = { from, to, 0 };

@@ -83,8 +83,8 @@ particle_set particle_set_medium(double ratio)
       }
       if (largest > 0.5 * size || size == least)
       {
-        /* The scalar is 0 on a sphere that leads from near the origin to far away. Elsewhere it is
-         * the distance from this sphere, relative to the distance from the origin. */
+        /* The scalar is the distance from a sphere that comes close to the origin, relative to the
+         * distance from the origin. */
         const double r = length_of(x);
         const double from[3] = { x[0] - 0.7 - 0.5 * least, x[1], x[2] };
         const double scalar = (length_of(from) - 0.7) / (r + least);

@@ -35,12 +35,12 @@ typedef struct particle_set_entry
 const particle_set_entry* particle_set_find(const char* name);
 particle_set particle_set_of(const particle_set_entry* entry);
 
-/* Returns random particles: blocks and clouds, moved at random or not, with equal or very different smoothing lengths,
- * some solid, some in one place; scalars are smooth, random or of few values. */
+/* Returns random particles: lattice blocks, some moved at random or with holes, with equal or different smoothing
+ * lengths, some solid, at times two in one place. Scalars are smooth, random, of three values, or have outliers. */
 particle_set particle_set_random(uint64_t seed);
 
 /* Return particles whose largest and smallest smoothing length have this ratio. drops: five drops that touch. medium:
- * fluid that is finer nearer to the origin; scalar = 0 is a sphere that leads from near the origin to far away. */
+ * fluid that is finer nearer to the origin; scalar = 0 is a sphere that comes close to the origin. */
 particle_set particle_set_drops(double ratio);
 particle_set particle_set_medium(double ratio);
 /* Returns a coarse and a fine block of fluid side by side, on a floor of solids whose smoothing length differs from

@@ -24,7 +24,7 @@
 /* cmocka needs the headers above to be included first. */
 #include <cmocka.h>
 
-/* Fails unless the condition holds, and prints these values. */
+/* Unless the condition holds, fails and prints the values that follow. */
 #define CORE_CHECK(condition, ...)                                                                 \
   do                                                                                               \
   {                                                                                                \

@@ -22,7 +22,7 @@ void core_sort_records(void* records, int64_t count, size_t width);
 unsigned char* core_put_point(
   unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i, bool keys);
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s);
-/* Sorts both, and fails unless they have the same triangles, byte for byte. */
+/* Sorts `all` and `whole`, and fails unless they have the same triangles, byte for byte. */
 void core_expect_same(const char* name, core_triangles* all, core_triangles* whole);
 
 /* Planes that cut the lattice into boxes; the outer boxes reach to infinity. */

@@ -120,8 +120,8 @@ static int lattice_touches_finer(
   return 0;
 }
 
-/* Writes where one of the 3 x 3 x 3 places of a cell is (p), half a cell apart, and on which sides of the brick it
- * lies. */
+/* A cell has 3 x 3 x 3 places, half a cell apart. Writes p, one of these places, and on which sides of the brick it
+ * is. */
 static void lattice_place_in_brick(
   const lattice_brick* brick, const int64_t at[3], const int place[3], int64_t p[3], int sides[3])
 {
@@ -335,8 +335,8 @@ static void lattice_descend_all(lattice_descent* descent)
   free(all);
 }
 
-/* A split brick has parts of level - 1 or less, so a brick that touches it must be smaller than twice its size. Splits
- * larger bricks that touch it. */
+/* Bricks that touch may differ by one level only. A split brick has parts of the next lower level, so larger bricks
+ * that touch it are split, too. */
 static void lattice_balance(oracle_lattice* lattice)
 {
   for (int level = 1; level < lattice->top; ++level)

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests surfaces of adaptive cubes: with one level they equal surfaces of uniform cubes, and few nodes are evaluated.
- * Other tests: the oracle checks their edges and triangles, core_adaptive_parts their bits in boxes, core_warning
- * particles of very different sizes. */
+/* Tests surfaces of adaptive cubes: surfaces with one level equal surfaces of uniform cubes, and few nodes are
+ * evaluated. In other tests, the oracle checks edges and triangles, core_adaptive_parts the bits of boxes, and
+ * core_warning particles of very different sizes. */
 
 #include "core_fixture.h"
 

@@ -97,7 +97,7 @@ static void check_programs(const mcor_input* input, const mcor_options* options)
   CORE_CHECK(built == (wanted | 1 << MCOR_PROGRAM_TRIM), "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
 }
 
-/* mcor_list_programs must name what runs with pairs, in a box, and with adaptive cubes use. */
+/* For runs with pairs, in a box, and with adaptive cubes, mcor_list_programs must name the programs used. */
 static void test_programs_of_runs(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);

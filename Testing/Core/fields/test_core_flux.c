@@ -175,8 +175,8 @@ static void test_uniform(void** state)
   assert_true(isnan(r.mass_flux) && fabs(r.volume_flux - 30) < 1e-4);
 }
 
-/* If particles lie in a plane, a section is a line. Checks uniform flow in planes of constant x, y
- * and z. u and v are the plane's two axes, in their order. */
+/* If particles lie in a plane, a section is a line. Checks uniform flow in planes of constant x, y and z. Along the two
+ * axes of the plane, the velocity is u = 1 and v = -2. */
 static void test_uniform_in_a_plane(void** state)
 {
   const struct

@@ -168,7 +168,7 @@ static void test_neighbours(void** state)
   particle_set_free(&alone.set);
 }
 
-/* Flattens the set to this height. The unit is the fluid's extent. */
+/* Puts the particles into rows and columns, 1.1 apart along x and z. Along y they have seven places, `height` apart. */
 static void flatten(particle_set* set, double height)
 {
   for (int64_t i = 0; i < set->count; ++i)
@@ -179,8 +179,7 @@ static void flatten(particle_set* set, double height)
   }
 }
 
-/* Tilts the set into a plane through the y axis. The last `off` particles lie one smoothing length away from this
- * plane. */
+/* Flattens the set and turns it about the z axis. The last `off` particles lie a smoothing length off the plane. */
 static void tilt(particle_set* set, double height, int off)
 {
   flatten(set, height);

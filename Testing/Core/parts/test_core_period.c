@@ -104,8 +104,8 @@ static void grade_lengths(particle_set* set, double side, double middle, double 
   }
 }
 
-/* Checks adaptive cubes: levels match across the period's sides, even if the finest particles are at a side. If a side
- * is no whole number of large cubes, fewer levels are used. */
+/* Checks adaptive cubes: levels match across the period's sides, even if the finest particles are at a side. If a
+ * period is no whole number of large cubes, fewer levels are used. */
 static void adaptive_cubes(void** state)
 {
   const double iso = 0.2, half = 0.5;
@@ -210,7 +210,7 @@ static void lengths(void** state)
 }
 
 /* Checks adaptive cubes that have a different edge along each axis. The surface must be closed except at the sides,
- * where each point has a partner, as exact as usual, and close to the surface of uniform cubes. */
+ * where each point must have a partner. It must be as exact as usual, and close to the surface of uniform cubes. */
 static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;

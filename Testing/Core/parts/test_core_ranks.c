@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests that ranks, which are threads, measure the same as one process to the last bit, whichever rank holds which
- * particles. */
+/* Tests that ranks, which are threads, have the same global values, surfaces and smoothing lengths as one process, to
+ * the last bit, whichever rank holds which particles. */
 
 #include "core_parts.h"
 #include "core_ranks.h"

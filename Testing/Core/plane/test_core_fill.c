@@ -445,7 +445,7 @@ static void test_bits(void** state)
   }
 }
 
-/* At a node in the filled region, attributes equal those that a probe finds there. */
+/* At a node in the filled region, attributes equal the values that a probe finds there. */
 static void test_attributes(void** state)
 {
   mcor_context* context = *state;

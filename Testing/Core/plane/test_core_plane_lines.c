@@ -7,8 +7,8 @@
 #include "mcor_plane.h"
 #include "plane_reference.h"
 
-/* Extracts the lines of the input and compares them with the reference's, whose particles are field->set. Returns how
- * many sides of squares are crossed. */
+/* Extracts the lines of the input and compares them with the lines of the reference, which has the particles
+ * field->set. Returns how many sides of squares are crossed. */
 static int64_t compare(
   mcor_context* context, const mcor_input* input, const plane_field* field, int closed)
 {

@@ -105,7 +105,7 @@ static int compare_within_rounding(const compare_state* state, const lattice_nod
     oracle_rounding(&reference->field, p, reference->unit);
 }
 
-/* The place of a vertex without an unmatched crossed edge: a node, or an edge of any size. */
+/* The place of a vertex that could not be matched with a crossed edge: a node, or an edge of any size. */
 typedef struct compare_place
 {
   int taken; /* a crossed edge here has its vertices already */
@@ -349,7 +349,7 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
     const int64_t from = lattice->segments[s].from;
     const int64_t to = lattice->segments[s].to;
     /* Segments that rounding decides are not checked. With the paper's seeds a component may be missing although its
-     * crossings on a face have vertices: these may belong to another component that touches it in pinched edges. */
+     * crossings on a face have vertices: another component that touches it in pinched edges may own the vertices. */
     const int may_lack = state->options->seeds == MCOR_PAIRS &&
       compare_pinched(&lattice->edges[from]) && compare_pinched(&lattice->edges[to]);
     if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 || may_lack ||

@@ -104,7 +104,7 @@ static void test_all_phases_ask(void** state)
   const bool built_in = strcmp(context->cl.platform_name, "built in") == 0;
   CORE_SET set = core_make_block(12, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
-  const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 4,
+  const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 3,
     [MCOR_PHASE_SEARCH_GRID] = 23,
     [MCOR_PHASE_SEEDS] = built_in ? 40 : 36,
     [MCOR_PHASE_EXTRACTION] = 14,

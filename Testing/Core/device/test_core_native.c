@@ -364,5 +364,33 @@ static void test_locked(void** state)
   mcor_release(context, &buffer);
 }
 
+/* For a device with memory of its own, particles are staged in portions, and arrays whose elements are all the same are
+ * not copied. No bit changes. */
+static void test_device_apart(void** state)
+{
+  CORE_SET set = core_make_block(70, 0.3, 3, core_slope);
+  const double iso[] = { -14, 0, 15 };
+  mcor_input input = core_input(&set);
+  mcor_options options = core_options(iso);
+  options.iso_count = 3;
+  options.h_scale = 1.1;
+  input.volume = (mcor_array){ .constant = 1 };
+  for (int lengths = 1; lengths <= 2; ++lengths)
+  {
+    uint64_t hash[2];
+    for (int apart = 0; apart < 2; ++apart)
+    {
+      CORE_CONTEXT context = make_native();
+      context->cl.is_apart = apart;
+      hash[apart] = core_hash_of(context, &input, &options);
+    }
+    assert_true(hash[0] == hash[1]);
+    for (int64_t i = 0; i < set.count; i += 3) /* for the second round */
+    {
+      set.smoothing_length[i] = 1.2;
+    }
+  }
+}
+
 CORE_MAIN(NULL, NULL, test_functions, test_loops, test_fork, test_little_room_for_drivers,
-  test_contexts_side_by_side, test_threads_of_environment, test_shares, test_locked)
+  test_contexts_side_by_side, test_threads_of_environment, test_shares, test_locked, test_device_apart)

@@ -26,7 +26,9 @@ typedef struct mcor_locked
 {
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
   void* host;
-  size_t size, written; /* written: bytes to copy to the buffer when it is unmapped */
+  size_t size, written; /* written: bytes to copy to the buffer until it is unmapped */
+  size_t sent; /* how many bytes the driver copies to the buffer or from it, or has copied since the
+                * last mcor_finish */
 } mcor_locked;
 
 /* One variant of the programs: everything that their compilation depends on. */
@@ -210,6 +212,9 @@ mcor_status mcor_read(
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
+/* Begins to copy to the device the first `bytes` of a buffer that is mapped to be written, while
+ * the host writes the bytes behind them. Does nothing where host and device share memory. */
+mcor_status mcor_send(mcor_context* context, const void* data, size_t bytes);
 /* A buffer for mcor_map_all, which maps several. *data must be NULL before mcor_map_all is
  * called. */
 typedef struct mcor_mapping
@@ -220,11 +225,16 @@ typedef struct mcor_mapping
 } mcor_mapping;
 /* Maps the buffers for reading, in order, up to the first failure. */
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
+/* The same, but the host may read the buffers only after the next mcor_finish. */
+mcor_status mcor_begin_mapping(mcor_context* context, const mcor_mapping* mappings, int count);
 /* Unmaps all of the buffers that are mapped. Returns `status` or, if that is MCOR_OK, the first
  * failure. */
 mcor_status mcor_unmap_all(
   mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
+/* Fills a buffer with copies of a real number. Only for devices with memory of their own. */
+mcor_status mcor_fill_reals(
+  mcor_context* context, mcor_buffer* buffer, double value, size_t count);
 /* Fills only the bytes [first, last). */
 mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);

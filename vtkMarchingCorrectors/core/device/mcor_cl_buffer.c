@@ -164,17 +164,23 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   return status;
 }
 
-mcor_status mcor_read(
-  mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes)
+static mcor_status mcor_enqueue_read(mcor_context* context, const mcor_buffer* buffer,
+  size_t offset, void* data, size_t bytes, bool waits)
 {
   if (bytes > 0)
   {
     MCOR_CL_COMMAND(context, MCOR_COMMAND_READ, "", bytes,
       clEnqueueReadBuffer(
-        context->cl.queue, buffer->mem, CL_TRUE, offset, bytes, data, 0, NULL, MCOR_EVENT),
+        context->cl.queue, buffer->mem, waits, offset, bytes, data, 0, NULL, MCOR_EVENT),
       "clEnqueueReadBuffer");
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_read(
+  mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes)
+{
+  return mcor_enqueue_read(context, buffer, offset, data, bytes, true);
 }
 
 /* Takes the smallest unused memory with enough room; if no memory is large enough, enlarges the
@@ -191,6 +197,14 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
     best = !l->of && is_better ? l : best;
   }
   MCOR_FAIL_IF(!best, context, MCOR_DEVICE_ERROR, MCOR_SAY(BUFFERS_MAPPED), MCOR_LOCKED_LIMIT);
+  if (best->sent > 0) /* the driver may still copy what the memory held before */
+  {
+    MCOR_TRY(mcor_finish(context));
+    for (mcor_locked* l = cl->locked; l < cl->locked + MCOR_LOCKED_LIMIT; ++l)
+    {
+      l->sent = l->of ? l->sent : 0;
+    }
+  }
   if (best->size < bytes)
   {
     const size_t more = bytes + bytes / 8, size = more < cl->largest_buffer ? more : bytes;
@@ -209,8 +223,9 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
   return MCOR_OK;
 }
 
-mcor_status mcor_map(
-  mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data)
+/* waits: the host may read the buffer when the function returns, else after mcor_finish. */
+static mcor_status mcor_map_view(mcor_context* context, const mcor_buffer* buffer, size_t bytes,
+  bool write, bool waits, void** data)
 {
   mcor_cl* cl = &context->cl;
   const size_t some = bytes > 0 ? bytes : 1;
@@ -223,19 +238,16 @@ mcor_status mcor_map(
   {
     mcor_locked* locked = NULL;
     MCOR_TRY(mcor_take_locked(context, some, &locked));
-    if (!write)
-    {
-      MCOR_TRY(mcor_read(context, buffer, 0, locked->host, bytes));
-    }
     locked->of = buffer->mem;
     locked->written = write ? bytes : 0;
+    locked->sent = write || waits ? 0 : bytes;
     *data = locked->host;
-    return MCOR_OK;
+    return write ? MCOR_OK : mcor_enqueue_read(context, buffer, 0, *data, bytes, waits);
   }
   cl_int error;
   void* mapped = NULL;
   MCOR_CL_COMMAND(context, MCOR_COMMAND_MAP, "", bytes,
-    (mapped = clEnqueueMapBuffer(cl->queue, buffer->mem, CL_TRUE,
+    (mapped = clEnqueueMapBuffer(cl->queue, buffer->mem, waits,
        write ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ, 0, some, 0, NULL, MCOR_EVENT, &error),
       error),
     "clEnqueueMapBuffer");
@@ -243,26 +255,50 @@ mcor_status mcor_map(
   return MCOR_OK;
 }
 
+mcor_status mcor_map(
+  mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data)
+{
+  return mcor_map_view(context, buffer, bytes, write, true, data);
+}
+
+/* Returns the locked memory at a mapped address; NULL: there is none. */
+static mcor_locked* mcor_find_locked(mcor_cl* cl, const void* mapped)
+{
+  mcor_locked* l = cl->locked;
+  while (l < cl->locked + MCOR_LOCKED_LIMIT && !(l->of && l->host == mapped))
+  {
+    ++l;
+  }
+  return l < cl->locked + MCOR_LOCKED_LIMIT ? l : NULL;
+}
+
+mcor_status mcor_send(mcor_context* context, const void* data, size_t bytes)
+{
+  mcor_locked* l = mcor_find_locked(&context->cl, data);
+  if (l && bytes > l->sent)
+  {
+    const size_t begin = l->sent, more = bytes - begin;
+    l->sent = bytes;
+    MCOR_CL_COMMAND(context, MCOR_COMMAND_WRITE, "", more,
+      clEnqueueWriteBuffer(context->cl.queue, l->of, CL_FALSE, begin, more,
+        (const char*)data + begin, 0, NULL, MCOR_EVENT),
+      "clEnqueueWriteBuffer");
+    MCOR_CL_TRY(context, clFlush(context->cl.queue), "clFlush");
+  }
+  return MCOR_OK;
+}
+
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data)
 {
   mcor_cl* cl = &context->cl;
   void* const mapped = *data;
+  mcor_locked* locked = mcor_find_locked(cl, mapped);
   *data = NULL;
-  for (mcor_locked* l = cl->locked; mapped && l < cl->locked + MCOR_LOCKED_LIMIT; ++l)
+  if (locked)
   {
-    if (l->of && l->host == mapped)
-    {
-      const size_t bytes = l->written;
-      *l = (mcor_locked){ .mem = l->mem, .host = l->host, .size = l->size };
-      if (bytes > 0)
-      {
-        MCOR_CL_COMMAND(context, MCOR_COMMAND_WRITE, "", bytes,
-          clEnqueueWriteBuffer(
-            cl->queue, buffer->mem, CL_TRUE, 0, bytes, mapped, 0, NULL, MCOR_EVENT),
-          "clEnqueueWriteBuffer");
-      }
-      return MCOR_OK;
-    }
+    const mcor_status status = mcor_send(context, mapped, locked->written);
+    locked->of = NULL;
+    return status;
   }
   if (mapped)
   {
@@ -272,13 +308,25 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
   return MCOR_OK;
 }
 
-mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count)
+static mcor_status mcor_map_views(
+  mcor_context* context, const mcor_mapping* mappings, int count, bool waits)
 {
   for (int i = 0; i < count; ++i)
   {
-    MCOR_TRY(mcor_map(context, mappings[i].buffer, mappings[i].bytes, false, mappings[i].data));
+    const mcor_mapping* m = mappings + i;
+    MCOR_TRY(mcor_map_view(context, m->buffer, m->bytes, false, waits, m->data));
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count)
+{
+  return mcor_map_views(context, mappings, count, true);
+}
+
+mcor_status mcor_begin_mapping(mcor_context* context, const mcor_mapping* mappings, int count)
+{
+  return mcor_map_views(context, mappings, count, false);
 }
 
 mcor_status mcor_unmap_all(
@@ -305,8 +353,8 @@ mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, 
   return mcor_fill_range(context, buffer, byte, 0, bytes);
 }
 
-mcor_status mcor_fill_range(
-  mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last)
+static mcor_status mcor_fill_bytes(mcor_context* context, mcor_buffer* buffer,
+  const void* pattern, size_t width, size_t first, size_t last)
 {
   MCOR_TRY(mcor_reserve(context, buffer, last));
   for (size_t at = first, bytes; at < last; at += bytes)
@@ -314,11 +362,25 @@ mcor_status mcor_fill_range(
     bytes = mcor_step_of(last - at);
     MCOR_CL_COMMAND(context, MCOR_COMMAND_COPY, "", bytes,
       clEnqueueFillBuffer(
-        context->cl.queue, buffer->mem, &byte, sizeof byte, at, bytes, 0, NULL, MCOR_EVENT),
+        context->cl.queue, buffer->mem, pattern, width, at, bytes, 0, NULL, MCOR_EVENT),
       "clEnqueueFillBuffer");
     MCOR_TRY(mcor_ask(context, false));
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_fill_range(
+  mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last)
+{
+  return mcor_fill_bytes(context, buffer, &byte, sizeof byte, first, last);
+}
+
+mcor_status mcor_fill_reals(mcor_context* context, mcor_buffer* buffer, double value, size_t count)
+{
+  const size_t width = context->cl.real_size;
+  double pattern;
+  mcor_put_real(context, &pattern, 0, value);
+  return mcor_fill_bytes(context, buffer, &pattern, width, 0, count * width);
 }
 
 mcor_status mcor_copy(

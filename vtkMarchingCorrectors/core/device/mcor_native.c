@@ -234,12 +234,15 @@ static cl_int mcor_copy_buffer(cl_command_queue queue, cl_mem from, cl_mem to, s
   return CL_SUCCESS;
 }
 
-/* This library fills only with patterns of one byte. */
 static cl_int mcor_fill_buffer(cl_command_queue queue, cl_mem buffer, const void* pattern,
   size_t pattern_size, size_t offset, size_t size, cl_uint count, const cl_event* wait,
   cl_event* event)
 {
   memset(buffer->data + offset, *(const unsigned char*)pattern, size);
+  for (size_t i = 0; i < size && pattern_size > 1; i += pattern_size)
+  {
+    memcpy(buffer->data + offset + i, pattern, pattern_size);
+  }
   return CL_SUCCESS;
 }
 
@@ -362,6 +365,7 @@ const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_i
   .clCreateCommandQueue = mcor_make_queue,
   .clReleaseCommandQueue = mcor_leave_queue,
   .clFinish = mcor_leave_queue,
+  .clFlush = mcor_leave_queue,
   .clCreateBuffer = mcor_make_buffer,
   .clReleaseMemObject = mcor_release_buffer,
   .clEnqueueReadBuffer = mcor_read_buffer,

@@ -33,6 +33,7 @@ const cl_icd_dispatch* mcor_driver(const void* object);
 #define clEnqueueWriteBuffer(o, ...) mcor_driver(o)->clEnqueueWriteBuffer(o, __VA_ARGS__)
 #define clEnqueueWriteBufferRect(o, ...) mcor_driver(o)->clEnqueueWriteBufferRect(o, __VA_ARGS__)
 #define clFinish(o) mcor_driver(o)->clFinish(o)
+#define clFlush(o) mcor_driver(o)->clFlush(o)
 #define clGetContextInfo(o, ...) mcor_driver(o)->clGetContextInfo(o, __VA_ARGS__)
 #define clGetDeviceIDs(o, ...) mcor_driver(o)->clGetDeviceIDs(o, __VA_ARGS__)
 #define clGetDeviceInfo(o, ...) mcor_driver(o)->clGetDeviceInfo(o, __VA_ARGS__)

@@ -54,7 +54,8 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   bool occurs[MCOR_LEVEL_LIMIT] = { false };
   uint8_t number[MCOR_LEVEL_LIMIT];
   const bool one = context->measure.support_min == context->measure.support_max;
-  for (int i = 0; i < (one && staging->count > 0 ? 1 : staging->count); ++i)
+  occurs[0] = one; /* all levels are 0 */
+  for (int i = 0; i < staging->count && !one; ++i)
   {
     occurs[particle_level[i]] = true;
   }

@@ -155,10 +155,10 @@ static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last
 {
   mcor_staging* staging = data;
   mcor_stage_chunk chunk;
-  int64_t used = staging->reach ? 0 : last - first;
-  for (int64_t i = first; i < last && !staging->reach && staging->input->solid; ++i)
+  int64_t used = 0;
+  for (int64_t i = first; i < last && !staging->reach; ++i)
   {
-    used -= !mcor_is_used(staging->context, staging->input, i);
+    used += mcor_is_used(staging->context, staging->input, i);
   }
   if (staging->reach)
   {
@@ -212,7 +212,6 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   const int count = chunk->count, top = context->lattice.levels - 1;
   const double h_scale = context->run.options->h_scale, cube = context->lattice.cube;
   const double reach = mcor_support_factor(context->run.options->sph_kernel) * h_scale;
-  uint8_t* level = (uint8_t*)staging->level + to;
   /* Rounds positions to the digits that evaluations use. */
   const bool are_rounded = mcor_spared_bits(context, m->support_max, cube, top) > 0;
   double unit = 1;
@@ -239,21 +238,22 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   {
     chunk->size[i] = solid[chunk->source[i]] ? -chunk->size[i] : chunk->size[i];
   }
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count && staging->size; ++i)
   {
     mcor_put_real(context, staging->size, to + i, chunk->size[i]);
   }
-  for (int i = 0; i < count; ++i)
+  if (staging->level)
   {
-    level[i] = 0;
+    uint8_t* level = (uint8_t*)staging->level + to;
+    memset(level, 0, (size_t)count);
+    for (int i = 0; i < count && m->support_min < m->support_max; ++i)
+    {
+      const double support = chunk->h[i] * reach;
+      const int of = support < m->support_max ? ilogb(m->support_max / support) : 0;
+      level[i] = (uint8_t)(of < 0 ? 0 : of >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : of);
+    }
   }
-  for (int i = 0; i < count && m->support_min < m->support_max; ++i)
-  {
-    const double support = chunk->h[i] * reach;
-    const int of = support < m->support_max ? ilogb(m->support_max / support) : 0;
-    level[i] = (uint8_t)(of < 0 ? 0 : of >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : of);
-  }
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count && staging->inv_h; ++i)
   {
     mcor_put_real(context, staging->inv_h, to + i, inv_h[i]);
   }
@@ -359,13 +359,26 @@ static void mcor_stage_images(const mcor_staging* staging, mcor_stage_slice* sli
   }
 }
 
+/* Whether sizes are areas, which become volumes times the smoothing length, see mcor_size_scale. */
+static bool mcor_are_areas(const mcor_staging* staging)
+{
+  return staging->context->space.flat && !mcor_needs_density(staging->input);
+}
+
 static void mcor_stage_particles(void* data, int number, int64_t first, int64_t last)
 {
   mcor_staging* staging = data;
   mcor_stage_slice* slice = &staging->slices[number];
+  first += staging->begin;
+  last += staging->begin;
+  if (!staging->context->source) /* all particles are staged, once each */
+  {
+    slice->to = first;
+    slice->used = last - first;
+  }
   int64_t to = slice->to, begin = first;
   mcor_stage_chunk chunk, out;
-  const bool are_areas = staging->context->space.flat && !mcor_needs_density(staging->input);
+  const bool are_areas = mcor_are_areas(staging);
   slice->heavy = -1;
   out.count = 0;
   while (
@@ -393,15 +406,38 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   slice->changed = slice->changed || (slice->heavy < 0 && to != slice->to + slice->used);
 }
 
+/* Fills the arrays of which all elements are the same, see mcor_staging. */
+static mcor_status mcor_fill_same(const mcor_staging* staging)
+{
+  mcor_context* context = staging->context;
+  mcor_stage_data* s = &context->stage;
+  const size_t count = (size_t)staging->count;
+  const double h = context->measure.h_min;
+  if (!staging->inv_h)
+  {
+    MCOR_TRY(mcor_fill_reals(
+      context, &s->inv_h, context->lattice.cube / context->run.options->h_scale / h, count));
+  }
+  if (!staging->size)
+  {
+    double size;
+    mcor_read_size(staging->input, 0, 1, &size);
+    size *= staging->size_scale;
+    MCOR_TRY(mcor_fill_reals(context, &s->size, size * (mcor_are_areas(staging) ? h : 1), count));
+  }
+  return staging->level ? MCOR_OK : mcor_fill(context, &s->level, 0, count);
+}
+
 /* Reserves room for the particles that are staged. */
 static mcor_status mcor_make_stage_room(mcor_staging* staging)
 {
   mcor_context* context = staging->context;
   mcor_stage_data* s = &context->stage;
-  int slices;
-  int64_t total = 0;
-  MCOR_TRY(mcor_parallel_run(
-    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_count_staged, staging, &slices));
+  const bool chooses = staging->input->solid || staging->reach;
+  int slices = 0;
+  int64_t total = chooses ? 0 : staging->input->count;
+  MCOR_TRY(mcor_parallel_run(context, chooses ? staging->input->count : 0, MCOR_HEAVY_GRAIN,
+    mcor_count_staged, staging, &slices));
   for (int i = 0; i < slices; ++i)
   {
     staging->slices[i].to = total;
@@ -414,7 +450,7 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
   staging->count = (int)total;
   free(context->source);
   context->source = NULL;
-  if (staging->input->solid || staging->reach)
+  if (chooses)
   {
     context->source = malloc(bytes + 1);
     MCOR_TRY(mcor_allocated(context, context->source));
@@ -424,6 +460,8 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
   const mcor_mapping views[] = { { &s->x, fix, &staging->x[0] }, { &s->y, fix, &staging->x[1] },
     { &s->z, fix, &staging->x[2] }, { &s->inv_h, real, &staging->inv_h },
     { &s->size, real, &staging->size }, { &s->level, count, &staging->level } };
+  const bool same[MCOR_STAGE_VIEWS] = { false, false, false, staging->one_inv_h, staging->one_size,
+    context->measure.support_min == context->measure.support_max };
   memcpy(staging->views, views, sizeof views);
   staging->view_count = MCOR_STAGE_VIEWS;
   for (int i = 0; i < MCOR_STAGE_VIEWS && count > 0; ++i)
@@ -432,33 +470,61 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
      * mcor_move_particles. */
     const size_t padded = views[i].bytes + MCOR_PADDING * context->cl.real_size;
     MCOR_TRY(mcor_reserve(context, buffers[i], padded));
-    MCOR_TRY(mcor_map(context, buffers[i], views[i].bytes, true, views[i].data));
+    if (!context->cl.is_apart || !same[i])
+    {
+      MCOR_TRY(mcor_map(context, buffers[i], views[i].bytes, true, views[i].data));
+    }
+  }
+  return context->cl.is_apart && count > 0 ? mcor_fill_same(staging) : MCOR_OK;
+}
+
+/* Fails if particles could not be staged. */
+static mcor_status mcor_check_staged(const mcor_staging* staging, int slices)
+{
+  mcor_context* context = staging->context;
+  for (int i = 0; i < slices; ++i)
+  {
+    const mcor_stage_slice* slice = &staging->slices[i];
+    MCOR_FAIL_IF(slice->changed, context, MCOR_INVALID_DATA, MCOR_SAY(ARRAYS_CHANGED),
+      context->run.options->globals ? ", or options.globals was measured over other particles"
+                                    : "");
+    MCOR_FAIL_IF(slice->heavy >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
+      (long long)slice->heavy, slice->largest_weight,
+      context->cl.real_size == sizeof(float) ? "single" : "double");
+    context->largest_weight = fmax(context->largest_weight, slice->largest_weight);
   }
   return MCOR_OK;
 }
+
+/* Particles that are staged while the portion before is copied to a device with memory of its
+ * own. */
+#define MCOR_STAGE_PORTION (1 << 18)
 
 static mcor_status mcor_stage_all(mcor_staging* staging)
 {
   mcor_context* context = staging->context;
   const mcor_options* options = context->run.options;
   MCOR_TRY(mcor_make_stage_room(staging));
-  int slices;
-  MCOR_TRY(mcor_parallel_run(context, staging->count > 0 ? staging->input->count : 0,
-    MCOR_HEAVY_GRAIN, mcor_stage_particles, staging, &slices));
   /* A computed volume is at most 100 h^3 / norm, see MCOR_LEAST_DENSITY. */
   context->largest_weight =
     mcor_needs_density(staging->input) ? 100 * pow(options->h_scale, -3) : 0;
   MCOR_FAIL_IF(!(context->largest_weight < mcor_weight_limit(context)), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(H_SCALE_TOO_SMALL), options->h_scale);
-  for (int i = 0; i < slices; ++i)
+  const int64_t all = staging->count > 0 ? staging->input->count : 0;
+  const bool sends = context->cl.is_apart && !context->source;
+  for (int64_t end = 0; staging->begin < all; staging->begin = end)
   {
-    const mcor_stage_slice* slice = &staging->slices[i];
-    MCOR_FAIL_IF(slice->changed, context, MCOR_INVALID_DATA, MCOR_SAY(ARRAYS_CHANGED),
-      options->globals ? ", or options.globals was measured over other particles" : "");
-    MCOR_FAIL_IF(slice->heavy >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(VOLUME_TOO_LARGE),
-      (long long)slice->heavy, slice->largest_weight,
-      context->cl.real_size == sizeof(float) ? "single" : "double");
-    context->largest_weight = fmax(context->largest_weight, slice->largest_weight);
+    int slices;
+    end = sends && all - staging->begin > MCOR_STAGE_PORTION ? staging->begin + MCOR_STAGE_PORTION
+                                                             : all;
+    MCOR_TRY(mcor_parallel_run(context, end - staging->begin, MCOR_HEAVY_GRAIN,
+      mcor_stage_particles, staging, &slices));
+    MCOR_TRY(mcor_check_staged(staging, slices));
+    for (int v = 0; sends && v < MCOR_STAGE_VIEWS - 1; ++v) /* levels are renumbered later */
+    {
+      const size_t width = staging->views[v].bytes / (size_t)staging->count;
+      MCOR_TRY(mcor_send(context, *staging->views[v].data, (size_t)end * width));
+    }
   }
   return MCOR_OK;
 }

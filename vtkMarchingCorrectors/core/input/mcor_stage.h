@@ -17,7 +17,8 @@ typedef struct mcor_stage_slice
 } mcor_stage_slice;
 
 /* The input in the device's form, in input order, without unused solids. The arrays are views of
- * the stage's buffers of the same names. */
+ * the stage's buffers of the same names; NULL: the device fills the buffer, because all elements
+ * are the same. */
 #define MCOR_STAGE_VIEWS 6
 typedef struct mcor_staging
 {
@@ -29,6 +30,7 @@ typedef struct mcor_staging
   void* level;                          /* uint8_t */
   mcor_mapping views[MCOR_STAGE_VIEWS]; /* views of the six arrays above, once these are mapped */
   int view_count;
+  int64_t begin;            /* the first particle of the portion that is being staged */
   double size_scale;        /* see mcor_size_scale */
   double h_max;             /* the greatest unscaled length of a kernel that was measured, with
                              * rounding */

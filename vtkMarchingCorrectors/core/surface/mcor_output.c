@@ -33,6 +33,8 @@ typedef struct mcor_download
   void *eigenvalue, *nearest, *curvature, *cuts; /* if the caller wants them */
   void *triangles, *cells;                       /* cells: if mcor_follows_cells */
   uint8_t* owned;                                /* see mcor_find_counted */
+  mcor_mapping views[12]; /* the views above, but for triangles and cells; the first is `scanned` */
+  int view_count;
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 
@@ -308,26 +310,6 @@ static void mcor_deliver_triangles_slice(void* data, int slice, int64_t first, i
   (void)slice;
 }
 
-static mcor_status mcor_deliver_triangles(mcor_download* d)
-{
-  mcor_context* context = d->context;
-  mcor_surface* s = d->surface;
-  mcor_buffer *triangles = &context->mesh.triangles, *cells = &context->box.cells;
-  const int64_t count = context->mesh.triangle_count;
-  const mcor_mapping views[] = { { triangles, 3 * (size_t)count * sizeof(cl_int), &d->triangles },
-    { cells, (size_t)count * sizeof(cl_ulong), &d->cells } };
-  const int mapped = count == 0 ? 0 : mcor_follows_cells(context) ? 2 : 1;
-  MCOR_TRY(
-    mcor_grow(context, (void**)&s->triangles, s->triangle_count, count, 3 * sizeof(int32_t)));
-  MCOR_TRY(mcor_extend_kept(context, count, s));
-  mcor_status status = mcor_map_all(context, views, mapped);
-  MCOR_THEN(status,
-    mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_deliver_triangles_slice, d, NULL));
-  MCOR_TRY(mcor_unmap_all(context, views, mapped, status));
-  mcor_release(context, triangles);
-  return MCOR_OK;
-}
-
 /* Evaluates at the vertices what the caller wants beside the field. */
 static mcor_status mcor_evaluate_outputs(mcor_context* context)
 {
@@ -357,7 +339,36 @@ static mcor_status mcor_evaluate_outputs(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Appends `count` points, whose vertices are mapped, and the triangles. */
+/* Begins to evaluate at the vertices what the caller wants, and to read the vertices. Meanwhile the
+ * host delivers triangles. */
+static mcor_status mcor_begin_vertices(mcor_download* d)
+{
+  MCOR_TRY(d->view_count > 0 ? mcor_evaluate_outputs(d->context) : MCOR_OK);
+  return mcor_begin_mapping(d->context, d->views + 1, d->view_count - 1);
+}
+
+static mcor_status mcor_deliver_triangles(mcor_download* d)
+{
+  mcor_context* context = d->context;
+  mcor_surface* s = d->surface;
+  mcor_buffer *triangles = &context->mesh.triangles, *cells = &context->box.cells;
+  const int64_t count = context->mesh.triangle_count;
+  const mcor_mapping views[] = { { triangles, 3 * (size_t)count * sizeof(cl_int), &d->triangles },
+    { cells, (size_t)count * sizeof(cl_ulong), &d->cells } };
+  const int mapped = count == 0 ? 0 : mcor_follows_cells(context) ? 2 : 1;
+  MCOR_TRY(
+    mcor_grow(context, (void**)&s->triangles, s->triangle_count, count, 3 * sizeof(int32_t)));
+  MCOR_TRY(mcor_extend_kept(context, count, s));
+  mcor_status status = mcor_map_all(context, views, mapped);
+  MCOR_THEN(status, mcor_begin_vertices(d));
+  MCOR_THEN(status,
+    mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_deliver_triangles_slice, d, NULL));
+  MCOR_TRY(mcor_unmap_all(context, views, mapped, status));
+  mcor_release(context, triangles);
+  return MCOR_OK;
+}
+
+/* Appends `count` points and the triangles. */
 static mcor_status mcor_deliver(mcor_download* d, const mcor_input* input, int count)
 {
   mcor_context* context = d->context;
@@ -370,6 +381,7 @@ static mcor_status mcor_deliver(mcor_download* d, const mcor_input* input, int c
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
   {
+    MCOR_TRY(mcor_finish(context));
     mcor_number_lines(context, d->scanned, base);
     MCOR_TRY(mcor_deliver_vertices(context, d));
     MCOR_TRY(mcor_add_attributes(context, input, d->scanned, surface));
@@ -404,7 +416,7 @@ mcor_status mcor_append_output(
              has_eigenvalue = mcor_wants(context, MCOR_OUT_BOUNDARY_EIGENVALUE),
              has_nearest = mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE),
              has_keys = mcor_wants(context, MCOR_OUT_POINT_KEYS);
-  const mcor_mapping views[] = { { &m->scanned, (n + 1) * sizeof(cl_int), &d.scanned },
+  const mcor_mapping views[12] = { { &m->scanned, (n + 1) * sizeof(cl_int), &d.scanned },
     { &m->node, n * 4 * sizeof(cl_int), &d.node }, { &m->offset, n * 4 * real, &d.offset },
     { &m->linear, (size_t)m->march_count * real, &d.linear },
     { &m->field_value, n * real, &d.value }, { &m->gradient, n * 4 * real, &d.gradient },
@@ -419,14 +431,11 @@ mcor_status mcor_append_output(
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_number_vertices(context, all, &count);
-  const int mapped = count > 0 ? (int)(sizeof views / sizeof *views) : 0;
-  if (mapped > 0)
-  {
-    MCOR_THEN(status, mcor_evaluate_outputs(context));
-  }
-  MCOR_THEN(status, mcor_map_all(context, views, mapped));
+  memcpy(d.views, views, sizeof views);
+  d.view_count = count > 0 ? (int)(sizeof views / sizeof *views) : 0;
+  MCOR_THEN(status, mcor_map_all(context, views, count > 0));
   MCOR_THEN(status, mcor_deliver(&d, input, count));
-  status = mcor_unmap_all(context, views, mapped, status);
+  status = mcor_unmap_all(context, views, d.view_count, status);
   mcor_release_attributes(context);
   MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
     &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned, eigenvalue);

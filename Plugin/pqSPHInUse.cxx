@@ -276,8 +276,8 @@ void pqSPHInUse::beginNew()
 }
 
 // Sets a slice through the middle of the fluid, or in the plane of the particles; or sets a line
-// through the densest part of the fluid, along its longest side or upright. The line ends somewhat
-// beyond the fluid.
+// through the densest part of the fluid: upright for a gauge, else along the fluid's longest side. The
+// line ends somewhat beyond the fluid.
 void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();
@@ -315,7 +315,7 @@ void pqSPHInUse::beginPlace()
   const bool isGauge = filter->GetProperty("Level") != nullptr;
   if (isGauge && up == 2)
   {
-    // Up is z, unless walls are higher than the water along y.
+    // Up is z, unless walls rise above the water along y, and more than along z.
     double all[6];
     data->GetBounds(all);
     const auto above = [&all, &low, &high](int a)

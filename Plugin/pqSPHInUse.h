@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The group "In Use" of a filter's panel, folded at first. The group shows what its information
- * properties were after the last update; ParaView itself leaves out such properties. The group must
- * also have a property of another kind, because ParaView creates the group's widget when it comes to
- * such a property.
+ * The group "In Use" of a filter's panel, folded at first. The group shows the filter's information
+ * properties as they were after the last update; ParaView itself leaves out such properties. The group
+ * must also have another property, because only there ParaView creates the group's widget.
  *
  * As soon as something is changed on the panel, before Apply, the group shows what the next update
  * would find (the properties that begin with Next, if the filter has them). The list of iso values

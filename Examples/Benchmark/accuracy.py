@@ -71,8 +71,8 @@ def walls():
 
 
 def volumes():
-    """Prints the volume inside the free surface of sheets, threads and drops of few particles, relative to the particles' own
-    volume: with computed volumes, and with a given volume of 1 for each particle."""
+    """Prints by how many per cent the volume inside the free surface of sheets, threads and drops of few particles exceeds the
+    particles' own volume: with computed volumes, and with a given volume of 1 for each particle."""
     ball = lattice((-4, 4), (-4, 4), (-4, 4))
     bodies = {"one layer": (lattice((0, 12), (0, 12), (0, 1)), (12, 12, 0)),
               "two layers": (lattice((0, 12), (0, 12), (0, 2)), (12, 12, 0)),
@@ -99,8 +99,8 @@ def volumes():
 
 
 def curvature():
-    """Prints curvature times radius for balls on a lattice. The surface is the contour of a scalar that is 0 at the radius, or the free
-    surface."""
+    """Prints how far the mean curvature times the radius is from 1, in %, for balls of particles on a lattice. The surface is the
+    contour of a scalar that is 0 on the sphere, or the free surface, or the smooth free surface."""
     lengths, rows = (1.0, 1.3, 1.7, 2.4), []
     for radius in (3, 4, 6, 10):
         x = lattice(*[(-radius - 8, radius + 8)] * 3)

@@ -309,7 +309,7 @@ def project(benchmark):
 
 
 class Walls:
-    """Holds the planes of the solid particles' bounding box, and the box around the solids that stand on the floor; y is up."""
+    """Holds the bounding box of the solids, which is the tank; and the box around the solids inside the tank, an obstacle; y is up."""
 
     def __init__(self, solid, h):
         self.low, self.high = solid.min(axis=0), solid.max(axis=0)
@@ -320,7 +320,7 @@ class Walls:
         return np.min([*(points - self.low).T, *(self.high - points).T], axis=0)
 
     def distance(self, points):
-        """Returns the distance of each point from the nearest wall; it is negative for points behind the wall."""
+        """Returns each point's distance from the nearest wall of the tank or of the obstacle; below 0 for a point behind the wall."""
         tank = self.tank(points)
         if self.box is None:
             return tank
@@ -332,8 +332,8 @@ class Walls:
 
 
 def add_walls(data, path):
-    """Writes the particles with a layer of solids around their box. The least smoothing length is the distance between the
-    layer and the box, and between neighbouring solids. A solid's volume is this length cubed."""
+    """Writes the particles with a layer of solids around their bounding box. The layer is one least smoothing length away from
+    the box; neighbouring solids are at most this length apart. A solid's volume is this length cubed."""
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing
@@ -357,8 +357,8 @@ WALL_CHOICES = {
 def walls(benchmark):
     """Measures where surfaces end at walls, for each choice of --solids: the distance of the surface's border from the
     first layer of wall particles, in smoothing lengths (below 0: behind the layer), and the share of points behind the layer.
-    A file without solids gets a layer of solids."""
-    out, near = benchmark.report, 1.5  # A border point this near to a wall, in smoothing lengths, ends there.
+    A file without the array ParticleType gets a layer of solids, see add_walls()."""
+    out, near = benchmark.report, 1.5  # Border points nearer to a wall than this, in smoothing lengths, count.
     edges = vtk.vtkFeatureEdges()  # These edges have only one triangle.
     edges.FeatureEdgesOff()
     edges.NonManifoldEdgesOff()
@@ -412,8 +412,8 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns the mean number of copies of a rank or, with `most`, the largest number. depth: how deep the shells are. If a
-        side is cut into p parts, a part has a neighbour on either side with probability 1 - 1/p."""
+        """Returns how many copies a rank gets: the mean or, with `most`, the most of any rank. depth: how deep the shells are. If
+        a side is cut into p parts, a part has a neighbour on a given side with probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))

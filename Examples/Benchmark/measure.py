@@ -251,7 +251,7 @@ def has_splashsurf():
 
 
 def smoothed_by_splashsurf(points, spacing, cube=0.5):
-    """Returns the mesh, with normals, of splashsurf's recommended settings; cubes are in particle radii."""
+    """Returns splashsurf's mesh, with normals, by its recommended settings. cube: the cubes' edge in particle radii."""
     import pysplashsurf
     return pysplashsurf.reconstruction_pipeline(
         points.astype("float32"), particle_radius=spacing / 2, smoothing_length=2.0, cube_size=cube, iso_surface_threshold=0.6,
@@ -280,9 +280,9 @@ def available_bytes():
 
 
 def compete(name, path, count, runs, limit, smaller=None, arguments=()):
-    """Returns medians of a competitor's runs, each in its own process, or why there are none. Reading particles is not timed. smaller: the
-    competitor's result for fewer particles, or None. A set that would take longer than `limit` seconds, or more memory than there is, is left
-    out."""
+    """Returns medians of a competitor's runs, each in its own process; if there are none, "left_out" says why. Reading particles is not timed.
+    smaller: the competitor's result for fewer particles, or None; from it, time and memory are estimated. No run is made if it would take
+    longer than `limit` seconds, or more memory than there is."""
     if smaller:
         factor = count / smaller["particles"]
         seconds, size = factor * smaller["seconds"], factor * smaller["bytes"]

@@ -67,7 +67,6 @@ def by_warp(x, sizes, cube, device):
 
 
 def measure(tool, count, device):
-    """Prints the row of one tool."""
     import marchingcorrectors
     x, _, sizes = make_tank(count)
     cube = 0.5 * float(sizes["smoothing_length"][0])

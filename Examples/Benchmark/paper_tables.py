@@ -27,8 +27,8 @@ CUBE_FACTORS = (0.5, 1.0)
 
 @dataclasses.dataclass(frozen=True)
 class Data:
-    """A data set of the paper, and what the paper says of it. Six entries are the columns of the paper's tables: h
-    scale 1, 0.75 and 0.5, each with cubes of 0.5 h and h. None: not in the paper."""
+    """A data set of the paper, and what the paper says of it. A tuple of six has an entry for each column of the paper's
+    tables: h scale 1, 0.75 and 0.5, each with cubes of 0.5 h and h. None: not in the paper."""
     table: str
     title: str
     kind: str
@@ -49,7 +49,7 @@ class Data:
     lengths: tuple = ()
 
 
-# The paper prints these totals; some are not the sum of the rows above.
+# The totals are as the paper prints them; some are not the sum of the paper's other rows.
 PAPER = {
     "rings": Data(
         "I", "vortex rings", "vortex-rings", 10000000, "VorticityMagnitude", 50, 20,

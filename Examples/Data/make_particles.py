@@ -43,7 +43,7 @@ def dam_break(count, ratio=1.28):
     """Makes a collapsing water column. The largest smoothing length is 1.5 times the smallest. ratio: h / V^(1/3).
 
     The column was 1.228 x 1.0 x 0.55 m; the dam at x = 1.228 broke 0.3 s ago. z points up. The depth is Ritter's solution for a
-    dry bed. The particles are a jittered lattice, finest at the front and at the bottom, coarse far from both. A particle's
+    dry bed. The particles are a jittered lattice, finest at the front, at the bottom and at y = 1, coarse far from these. A particle's
     volume V is the volume of its lattice cell. Arrays: SmoothingLength, Density (1000), Mass = 1000 V, and Lambda2 (1/s^2) of a
     periodic flow made of vortices. Lambda2 is negative in the vortices' cores; try the iso value -140.
     """
@@ -127,7 +127,7 @@ def graded(count, ratio=1000):
 def wave(count, ratio=1.3, time=0.0):
     """Makes a wave in a flume, in two dimensions (y = 0), for lines. ratio: h / spacing.
 
-    Fluid and walls are a jittered lattice. The flume is 3 m long, with a cylinder. The surface has a steep wave, and a few drops
+    Fluid and walls are a lattice, jittered in the fluid. The flume is 3 m long, with a cylinder. The surface has a steep wave, and a few drops
     fly before its crest. With --steps the wave moves along the flume, by 0.05 s from step to step. Masses are per metre of width.
     Arrays: SmoothingLength (constant), Density (1000), Mass, Type (0 fluid, 1 wall), Pressure (hydrostatic, Pa), Velocity (of a
     solitary wave, m/s).

@@ -80,7 +80,7 @@ SIDES = {"Box": (0.0, 1.0) * 3, "PeriodicBounds": (0.0,) * 6, "Within": (0.0,) *
 # SetSeedModeToPairs(), and of a constant's name.
 WORDS = {"Kernel": list(map(camel, KERNELS)), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
          "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
-# What the panel shows of a run, before the run has found anything.
+# What the panel shows before a run has found anything.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
 # The filter keeps four things of its last run: a mark of the particles and a mark of the scalar, which tell whether the data on the

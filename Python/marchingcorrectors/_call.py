@@ -281,8 +281,8 @@ def warn_of_missing(missing):
 
 @contextlib.contextmanager
 def called(function, kind, arguments, *more):
-    """Yields the result of a function of the core, and frees it at the end. Widens smoothing lengths first if the options want it. Warns of
-    strange particles, except for a surface, whose warnings the caller gives."""
+    """Yields the result of a function of the core, and frees it at the end. Widens smoothing lengths first if the options want it. Calls
+    warn_of_particles(), except for a surface and for a widening: their callers give the warnings."""
     if arguments.options.widen != 1 and kind is not c.mcor_widening:
         of_surface = kind is c.mcor_surface
         arguments.widening = arguments.widening or widen(arguments, of_surface)

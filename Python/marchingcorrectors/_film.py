@@ -112,9 +112,9 @@ def run_particles(given, surface_of):
 
 
 def between_steps(steps, times, rate, velocity):
-    """Yields (label, function that returns particles and their time) for each of `times` or, without times, for each frame of this rate
-    from the first step on. The function raises an error for a step that cannot be read, and for a time outside of the steps. At most
-    two steps are in memory."""
+    """Yields (label, function that returns particles and their time) for each of `times` or, without times, for each frame from the first
+    step on. rate: frames per unit of time. The function raises an error for a step that cannot be read, and for a time outside of the
+    steps. At most two steps are in memory."""
     before, number, label = None, 0, ""
     for label, load in steps:
         try:
@@ -145,7 +145,8 @@ def between(before, after, first, last, time, velocity=None):
     Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps. They are linear in
     time if there are no velocities, or, with a warning, if particles move less than half or more than twice as far as the velocities
     say. Other real numbers are linear in time. Integers, and arrays that one step lacks, are those of the nearer step. A particle that
-    only one step has exists in the half of the interval next to this step. Raises InvalidArgument if ids are missing or not unique.
+    only one step has exists in the half of the interval next to this step, where it moves straight on with its velocity, if both steps
+    have velocities. Raises InvalidArgument if ids are missing or not unique.
     """
     share, span = (time - first) / (last - first), last - first
     near, ids = (before, after)[share >= 0.5], []
@@ -215,9 +216,9 @@ SPRAY_WORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid"
 
 
 def take_spray(surface, particles, words, iso, least, velocity=None):
-    """Returns the surface without the closed pieces that enclose fewer than `least` fluid particles, and the spray: the
-    particles in these pieces, and particles where the sum of the weights is below `iso`. A particle that is nearest to a
-    point of a piece that stays is no spray, even if its sum is below `iso`, as at the tip of a piece.
+    """Returns the surface without the pieces that small_pieces() finds, and the spray: the fluid particles of these pieces, and
+    fluid particles where the sum of the weights is below `iso`. A particle that is nearest to a point of a piece that stays is no
+    spray, even if its sum is below `iso`, as at the tip of a piece.
 
     words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of the array of velocities.
     """

@@ -318,7 +318,8 @@ STATES = np.array(["dry", "wet", "full"])
 
 @dataclass(eq=False, repr=False)
 class Gauges(Result):
-    """Readings of lines; lengths are from the line's beginning, unit of the positions (L). On dry lines, first, last and place are NaN."""
+    """What gauges read along lines. first, last and crossings are distances from the line's beginning. All lengths have the positions'
+    unit (L). On dry lines, first, last and place are NaN."""
 
     names: List[str]  #: of the lines; "0", "1", ... where none were given
     state: np.ndarray  #: (lines,) "dry": no fluid; "full": fluid at the line's end; "wet": else

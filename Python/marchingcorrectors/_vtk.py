@@ -141,8 +141,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns the vtkCellArray that has the vertices, and the types of all cells. The types begin with those of this
-    vtkCellArray."""
+    """Returns the vtkCellArray that has the vertex cells (of a grid: all cells; None if there are no such cells), and the type of
+    each cell. The types of the vtkCellArray's own cells come first; other cells may have 0."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
@@ -355,9 +355,9 @@ class Particles(Arguments):
         return lib.mcor_estimate_cells(given, ctypes.byref(self.options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
-        """Returns three marks. A mark changes with the particles, with the scalar, or with the options that the factors of smoothing
-        lengths depend on. The data set's own time counts, too, because users change arrays in place, and call only the data
-        set's Modified()."""
+        """Returns three marks: the first changes with the particles, the second with the scalar, the third with the options that the
+        factors of smoothing lengths depend on. The data set's own time counts, too, because users change arrays in place, and call
+        only the data set's Modified()."""
 
         def sign(thing):
             return None if thing is None else (thing.__this__, thing.GetMTime())
@@ -437,7 +437,7 @@ def add_nearest(data, name, array, nearest):
 
 
 def add_run(run, found, particles):
-    """Adds a run's results, settings and costs. Costs add up over blocks."""
+    """Adds a run's results, settings and costs. Over blocks, costs are summed; of a peak, the greatest is kept."""
     s, o = found.statistics, particles.options
     for name in ("Device", "Platform"):
         add(run, name, s[name.lower()])

@@ -67,8 +67,8 @@ herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* fou
   return sentence.empty() ? 0 : 1; // this ends the visit
 }
 
-/// Refuses a file that links to other files, which the user has not named. Throws
-/// std::runtime_error.
+/// Throws std::runtime_error if the file links to other files, which the user has not named, or if its
+/// groups lie too deep in each other.
 void RefuseLinks(const std::string& file)
 {
   H5open();
@@ -146,7 +146,7 @@ public:
 
   /// Reads `count` rows from `first` on, or all rows if `count` is below 0. Returns null if the
   /// array does not hold numbers, or has more than 2 dimensions or 1000 columns. Throws
-  /// std::runtime_error if there is no such array, or if it has fewer rows.
+  /// std::runtime_error if there is no such array, if it has fewer rows, or if it is damaged.
   vtkSmartPointer<vtkDataArray> Read(
     const std::string& name, long long first = 0, long long count = -1) const
   {
@@ -185,7 +185,7 @@ public:
     return array;
   }
 
-  /// Reads all values of an array, converted to ArrayT's type.
+  /// Reads all values of an array as ArrayT's type. Throws if this type is whole, but the array is not.
   template <typename ArrayT>
   std::vector<typename ArrayT::ValueType> Values(const std::string& name) const
   {

@@ -131,8 +131,8 @@ int AxisOfLines(vtkDataSet* data)
   return -1;
 }
 
-/// Places the camera as near to the box as possible, so that all its corners are in the picture, with
-/// equal space on opposite sides.
+/// Places the camera so near that the box's corners just fit into the picture, with a margin of 4 %, and
+/// with equal space on opposite sides.
 void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& box, double aspect)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -290,7 +290,7 @@ private:
     }
   }
 
-  /// Makes a legend of the bands that a region is filled with, the lowest one first.
+  /// Makes a legend of a filled region's bands, the lowest one first; null unless bands give the colours.
   static vtkSmartPointer<vtkLookupTable> MakeSteps(const ColorScale& colors, vtkDataSet* data)
   {
     vtkDataArray* bands = colors.CellArrayOf(data);

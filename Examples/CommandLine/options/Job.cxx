@@ -98,14 +98,14 @@ bool IsOfSteps(const Job& j)
   return IsCollectionFile(j.Output) || HasStepNumber(j.Output);
 }
 
-/// Whether there are several inputs, or files that list or number the steps.
+/// Whether there are several inputs, or the input or the output lists steps (.pvd) or numbers them (%04d).
 bool HasSteps(const Job& j)
 {
   return j.Inputs.size() > 1 || IsOfSteps(j) ||
     (!j.Inputs.empty() && IsListOfSteps(j.Inputs.front()));
 }
 
-/// Whether the output has one of the arrays that --derive makes.
+/// Whether the run uses an array that --derive makes: as scalar, as weight, or as an array of the output.
 bool UsesDerived(const Job& j)
 {
   std::vector<std::string> asked = j.AttributeNames;

@@ -23,7 +23,6 @@ struct Character
   bool Valid; ///< false: Code is the value of one byte that is not UTF-8
 };
 
-/// Returns the character at text[i].
 Character At(const std::string& text, std::size_t i)
 {
   const auto byte = [&](std::size_t k)

@@ -22,8 +22,8 @@ using View = std::string_view;
 
 // These functions read files. All throw std::runtime_error with one sentence.
 
-/// Returns the bytes of a file; an empty text if the file cannot be opened. The bytes stay in memory while a copy of the pointer
-/// exists.
+/// Returns the bytes of a file; an empty text if it cannot be opened or is no regular file. The bytes stay mapped while a copy
+/// of the pointer exists.
 using FileBytes = std::shared_ptr<const View>;
 FileBytes BytesOf(const std::string& file);
 
@@ -61,7 +61,7 @@ struct CollectionEntry
 };
 
 /// Reads the entries in the order of time; entries of the same time keep the order of the file. If a .pvd file lists a
-/// file, or a part, twice at one time, the last entry counts. `warnings` gets sentences.
+/// file, or a part, twice at one time, the last entry counts, and `warnings` gets a sentence.
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, std::vector<std::string>& warnings);
 

@@ -20,8 +20,8 @@
 namespace
 {
 
-/// An array: its label in format 2, its name here, its number of columns, and whether all types of
-/// particles have it, or only gas.
+/// An array: its label in format 2, the name that it gets, its number of columns, and whether all types
+/// of particles have it, or only gas.
 struct Known
 {
   View Label;

@@ -54,7 +54,7 @@ vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 void OpenSources(const std::vector<std::string>& files);
 
 /// Whether this is a file that the run reads, see CheckRegularFile(). Device and inode decide, not the
-/// name. Every writer asks this.
+/// name. No output may replace such a file.
 bool IsSource(const struct stat& file);
 
 /// Particles of files at one time. Cells are kept until all files are read: if one file has

@@ -46,7 +46,7 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// Makes the image of a step in which no particle is seen, with the place and size of the image `like`.
+/// Makes the image of a step without particles in the image, with the place and size of the image `like`.
 /// All values are 0, or NaN if the image shows a mean.
 vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
 {

@@ -78,9 +78,9 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
-/// Adds the walls of a file to all steps. If the name has %d, each step gets the file of its number. If
-/// the file is a list, each step gets the walls of its time or, without `haveTimes`, the next walls in
-/// the list. haveTimes: the steps come from a list, too. Throws std::runtime_error if a step gets no walls.
+/// Adds the walls of a file to all steps. If the name has %d, each step gets the file with the last number
+/// in the name of the step's own file. If the file is a list, each step gets the walls at its time or, without
+/// `haveTimes`, the next walls. haveTimes: the steps come from a list. Throws if a step gets no walls.
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {

@@ -85,9 +85,9 @@ private:
 /// Whether a warning tells of gauges or sections outside of all fluid.
 bool TellsOfDryPlaces(const std::string& warning);
 
-/// Writes a table that grows with each time. Returns false if a step failed. addRows() appends a
-/// moment's rows to the text; only the first process' text is written. The message at the end names
-/// `what`, then what finish() returns.
+/// Writes a table that grows with each time; with --gauge-grid, only finish() writes. Returns false if one
+/// of several steps failed; throws if the only one did. addRows() appends a moment's rows to the text; only
+/// the first process' text is written. The message at the end names `what`, then what finish() returns.
 bool MakeTable(Sharing& sharing, const std::string& what,
   const std::function<void(ParticleTimes::Moment& moment, std::string& text)>& addRows,
   const std::function<std::string()>& finish);

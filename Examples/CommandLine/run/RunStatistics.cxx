@@ -169,7 +169,7 @@ Members ListCosts(vtkFieldData* run, double wallSeconds)
     Of("wall_seconds", Json(wallSeconds)) };
 }
 
-/// Lists the program and its files; and, if there is a run, its device, arrays and parameters.
+/// Lists the program and its files; and, if `run` is not null, the run's device, arrays and parameters.
 Members ListSetting(const Job& job, vtkFieldData* run)
 {
   Members setting = { Of("program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION)),

@@ -205,8 +205,8 @@ bool MakeMeterTable(Sharing& sharing)
     finish);
 }
 
-// Gives the filter of pieces the same settings of the particles as the surface's filter. Surfaces
-// of several iso values are nested, so the surface of each iso value is measured by its pieces.
+// The filter of pieces gets the surface filter's settings of the particles. --numbers needs the pieces,
+// too, if there are several iso values: each value's surface is measured by its pieces.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {

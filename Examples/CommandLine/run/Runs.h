@@ -66,8 +66,8 @@ struct Run
 };
 
 /// Extracts the surface of the particles once. If the table `pieces` is wanted: gives the surface the
-/// array ComponentId, drops the pieces that are to be left out, and adds a row for each other piece to
-/// the table. Throws as Update() does.
+/// array ComponentId, drops the pieces that are to be left out, and adds a row for each piece that stays
+/// to the table. Throws as Update() does.
 Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time = 0.0,
   const std::string& progress = "");
 
@@ -89,7 +89,7 @@ void WritePicture(const Job& job, vtkDataSet* data, vtkDataSet* frame, ColorScal
 double Evaluate(
   Sharing& sharing, vtkPointSet* particles, vtkDataSet* points, const std::string& progress);
 
-/// Returns the image of the projection, on the first process. Throws if no particle is seen.
+/// Returns the image of the projection, on the first process. Throws if no particle lies in the image.
 vtkImageData* SeenImage(const Job& job);
 
 /// Returns a text such as "640 x 480 x 1 pixels".
@@ -100,10 +100,10 @@ std::string DescribeSize(vtkImageData* image);
 std::vector<double> NumbersOf(vtkFieldData* run, const std::string& name);
 double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 
-/// Returns one of the forms, with values in place of names in braces, such as {Area} or
-/// {ScalarRange:1}: the first form whose names all have values, else the last form, with nothing in
-/// place of names without a value. A value is a text, the array of a quantity if there is one, a whole
-/// count, or a number with six digits.
+/// Chooses the first form whose names in braces, such as {Area} or {ScalarRange:1}, all have values in
+/// the run, else the last form. Returns it with the values in place of the names; a name without a value
+/// becomes nothing. The value of a quantity that came from an array is the array's name. Numbers that
+/// are not whole get six digits.
 std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms);
 
 /// Describes a run's field data in four or five lines. atLength: in more lines, for users who know the method;
@@ -125,7 +125,8 @@ std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vt
 /// Returns the most memory that this process has had so far; 0 if the system does not tell.
 double PeakResidentBytes();
 
-/// The part of Extract() that adds pieces to the table `text`. In films, the table has a column of times.
+/// The part of Extract() for pieces: sets run.Pieces, and adds them to the table `text`. In films, the
+/// table has a column of times.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time);
 

@@ -117,7 +117,7 @@ public:
     return particles;
   }
 
-  /// Sorts the parts by GlobalPointIds and GlobalCellIds, and drops these arrays.
+  /// Joins the parts in the order of GlobalPointIds and GlobalCellIds, and drops these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override
   {
     return vtkSPHMergeSurface(this->Controller, part);

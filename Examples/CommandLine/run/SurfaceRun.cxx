@@ -215,8 +215,8 @@ std::string ReasonForNoSurface(vtkFieldData* run)
       Fill(run, { range, "" });
 }
 
-/// Shows a run's progress line. If no line is shown, says once that the driver compiles, if this
-/// takes more than a few seconds.
+/// Shows a run's progress line. If no line is shown, and the driver compiles for more than three seconds,
+/// says once that it compiles.
 class Progress
 {
 public:

@@ -22,16 +22,16 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Unless a range was given, widens the range by the values on most of this data set's area, so
-  /// that a film's colours cover all steps so far. Throws std::runtime_error if the data set has
-  /// points but lacks the array to colour by.
+  /// Unless a range was given, widens the range by the values on most of this data set's area (by all
+  /// values of an array of cells), so that a film's colours cover all steps so far. Throws
+  /// std::runtime_error if the data set has points, but the array to colour by is missing or holds texts.
   void Include(vtkDataSet* data);
 
   /// Returns the array of the data set that colours its points, or its cells; nullptr: none does.
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
   vtkDataArray* CellArrayOf(vtkDataSet* data) const;
 
-  /// If no array was wanted, and the surface has several iso values, suggests colours by iso value.
+  /// If no array was wanted, and the surface has several iso values, chooses colours by iso value or band.
   void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for

@@ -11,8 +11,8 @@ struct OutputTarget;
 
 /// Checks that the outputs can be written. Call it before the work, after OpenSources() for all inputs.
 /// Throws UsageError if an output is the same file as an input or as another output, under any name or
-/// link, or if standard output goes to this file; std::runtime_error if an output cannot be written. An
-/// empty name means no output.
+/// link, or if standard output or standard error goes to the output; std::runtime_error if an output
+/// cannot be written. An empty name means no output.
 void CheckOutputs(const std::vector<std::string>& outputs);
 
 /// Outputs that belong together. Each is written under a fresh name beside its target; Commit()

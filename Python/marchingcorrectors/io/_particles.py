@@ -86,8 +86,8 @@ class Particles:
     """Positions, arrays, and what the functions of this package want to know.
 
     smoothing_length, volume, mass, density: the name of an array, one value, or None. support_radius: whether
-    the smoothing length is the radius at which the kernel ends. h_factor: quantity() multiplies the
-    smoothing length with it. solid: None, or for each particle whether it is a wall. cell: nine numbers, the
+    the smoothing length is the radius at which the kernel ends. h_factor: the factor by which quantity() multiplies
+    the smoothing length. solid: None, or for each particle whether it is a wall. cell: nine numbers, the
     sides of a tilted cell, which cannot be used as a period. times: all times of a file that holds several.
     up: the axis that points up, if the layout tells it, else "z". parameters: all else that the file says
     (time, units, box_size, scale_factor, ...), as it stands in the file; no value is applied.

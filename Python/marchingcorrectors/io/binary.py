@@ -208,7 +208,7 @@ TEXT, DEPTH = 1, 8
 
 
 class Reader:
-    """Reads the file. Before it uses a length, it checks that the rest of the file is as long."""
+    """Reads a .bi4 file. A length is used only if the rest of the file is at least as long."""
 
     def __init__(self, file, path):
         self.file, self.path, self.name, self.state = file, path, path.name, state_of(file)

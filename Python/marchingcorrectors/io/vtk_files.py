@@ -61,7 +61,7 @@ def offsets_of(cells, count):
 
 
 def find_vertices(types, offsets, points, count):
-    """Returns, for each point, the first vertex that uses it, or -1."""
+    """Returns, for each point, the number of the first vertex cell that has the point, or -1."""
     cells = np.repeat(np.arange(len(types)), np.diff(offsets))
     used = np.isin(types, VERTICES)[cells] & (points >= 0) & (points < count)
     found = np.full(count, -1)
@@ -72,8 +72,8 @@ def find_vertices(types, offsets, points, count):
 def take_vertices(file, body, lists, cell_arrays):
     """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
     of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become
-    arrays of the points, too. Warns if points are left out. If there are cells, sets is_mesh to whether none of
-    them is a vertex. Returns the body.
+    arrays of the points, too. Warns if points are left out. Returns the body; if there are cells, its is_mesh says whether none of them
+    is a vertex.
 
     lists: pairs (types of cells, function); the function returns where each cell's points end in a list of points, and this list.
     cell_arrays: {name: function that returns the array}.

@@ -21,7 +21,7 @@ NUMBERS = [b"0", b"-1", b"1", b"3", b"26", b"28", b"1000000", b"2147483647", b"2
 
 
 def mutated(data, rng):
-    """Returns the data with one random change: another number or word, a lost tag or line, another byte, or some bytes removed."""
+    """Returns the data with one random change: another number or word, a lost, doubled or replaced tag or line, a changed byte, or lost bytes."""
     def replaced(match, by):
         return data[:match.start()] + by + data[match.end():]
 

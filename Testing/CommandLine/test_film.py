@@ -200,8 +200,8 @@ class Film(CommandLineTest):
         self.assertEqual(self.listed()[0][1].read_bytes(), whole)
 
     def test_other_formats(self):
-        """If the output name has the step's number, no list of files is written, and files of an earlier run are
-        replaced."""
+        """If the output name has the step's number, no list of files is written, and files with the
+        outputs' names are replaced."""
         self.write_steps(3)
         for ending, begin in ((".ply", b"ply\n"), (".obj", b"# by"), (".stl", b"binary"), (".vtp", b"<?xml")):
             with self.subTest(ending):

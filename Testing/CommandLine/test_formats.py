@@ -141,8 +141,8 @@ class Formats(CommandLineTest):
                     self.assertEqual(found["triangles"], expected)
 
     def test_pieces_of_several_types(self):
-        """One piece stores an array as float, the other as double. Both types hold these numbers exactly, so the
-        surface is the same."""
+        """If one piece stores an array as float, and the other as double, the surface has as many triangles as if
+        both store doubles."""
         path, pieces = self.write_pieces("vtp", files.write_vtp)
         expected = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
         text = pieces[1].read_text()

@@ -113,7 +113,7 @@ def parameters_of(report):
 
 def is_shown(option, value, report, base):
     """Returns whether the report shows the option: a parameter with a name like the option's has changed, to the option's value if this is
-    a number or a word. A number may also replace an array's name. Returns True if the reports have no such parameter."""
+    a number or a word. A number may also replace an array's name. Returns True if the reports have no such parameter, or are equal."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
     mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}
@@ -230,8 +230,8 @@ class Modes(CommandLineTest):
         self.assertEqual(said, listed)
 
     def test_options_that_exclude_each_other(self):
-        """If two options exclude each other by a row of Exclusions in Job.cxx, the sentence names both, in either order
-        on the command line."""
+        """If two options have a row in Exclusions (Job.cxx), the program refuses them together, and its error names both,
+        whichever comes first on the command line."""
         pairs = re.findall(r'\n  \{ "(--[\w-]+)", "(--[\w-]+)", ', (OPTIONS / "Job.cxx").read_text(encoding="utf-8"))
         self.assertGreater(len(pairs), 9)
         for first, second in pairs:

@@ -88,8 +88,8 @@ class Project(CommandLineTest):
             self.assertRegex(told, says("SIZE_BESIDE_VOLUME", "mass is") if more else "^$")
 
     def test_steps_without_fluid(self):
-        """The image of a step without particles has as many pixels of the same size as the neighbouring step's. The values are 0, or NaN if
-        the image shows a mean."""
+        """The image of a step without particles has the pixels (number and size) of the nearest step with particles. The values are 0, or
+        NaN if the image shows a mean."""
         files.write_vtp(self.directory / "none.vtp", [], {})
         options = ["--project", "z", "--resolution", "9", "--scalar", "Kind"]
         for more, empty in (([], lambda value: value == 0), (["--weighted-by", "Mass"], math.isnan)):

@@ -166,7 +166,7 @@ static int run_kernels(mcor_context* context)
 }
 
 /* Runs the cases that need the same device program (a driver may compile it for half a minute). The first device sets
- * `expected`; the hashes of all others must be equal. */
+ * `expected`; all other devices' hashes must be equal. */
 static int run_device(int device, uint64_t expected[])
 {
   char number[16];

@@ -21,7 +21,7 @@ static int counted;
 static cl_int fail_with;
 static char failed_call[64];
 
-/* Buffers that were made and not released. */
+/* The number of buffers that were made and not released. */
 static atomic_int live_buffers;
 
 static int fails(const char* name, int kind)

@@ -21,7 +21,7 @@ void core_fail_nothing(void);
 /* Returns the name of the call that has failed, or "". */
 const char* core_failed_call(void);
 
-/* Sets the log of a failed build. Like a real driver, it returns the whole log or nothing. */
+/* Sets the log of a failed build. As with a real driver, a query returns the whole log or nothing. */
 void core_set_build_log(const char* log);
 
 /* Fails unless the context holds exactly `bytes` in `buffers` buffers after a run. */

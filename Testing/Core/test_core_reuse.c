@@ -250,7 +250,8 @@ static uint64_t fresh_hash(const reuse_call* call, const char* step)
   return hash;
 }
 
-/* Runs the step's base, then twice the changed call, then the base again. Returns how many results are wrong. */
+/* Runs the step's base, then twice the changed call, then the base again. Returns 1 if a result is wrong, or
+ * equals the base's although the change must matter. */
 static int check_step(
   mcor_context* context, reuse_call* call, const reuse_step* step, const uint64_t* base)
 {

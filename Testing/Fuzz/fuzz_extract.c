@@ -64,7 +64,8 @@ static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
   in->solid = kind & 0x80 ? solid : NULL;
 }
 
-/* Chooses which of the arrays the input has as volume, mass, and so on. */
+/* Leaves out volume, mass, density or attributes, lets solids be ignored, and takes a component of the
+ * positions as the scalar, as the bits of `rules` say. */
 static void fuzz_parts(unsigned rules, fuzz_call* call)
 {
   const mcor_array none = { 0 };

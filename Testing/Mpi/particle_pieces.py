@@ -37,7 +37,7 @@ def add(data, **arrays):
 
 
 def take(whole, indices):
-    """Returns the points with these indices, with their arrays and the time of the whole, but without cells."""
+    """Returns the points with these indices, with their arrays and the whole's field data, but without cells."""
     part = vtkPolyData()
     part.SetFieldData(whole.GetFieldData())
     part.SetPoints(vtkPoints())

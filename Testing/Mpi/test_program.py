@@ -195,8 +195,8 @@ class Program(unittest.TestCase):
             self.assertEqual(said[0], said[1])
 
     def test_particle_distance(self):
-        """The particles of all processes together decide the dimension. First each piece lies in a plane of its own, then all lie in one
-        plane, apart from ignored walls."""
+        """The particles of all processes together decide the dimension. First the particles lie in two planes; then those in
+        the second plane are ignored walls."""
         plane = read(self.write_plane())
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = np.where(np.arange(len(at)) < len(at) // 2, 0.5, 0.6)
@@ -210,7 +210,7 @@ class Program(unittest.TestCase):
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
     def test_period_of_data(self):
-        """The field data give the period, though one piece may lack it. Different periods in two pieces are refused."""
+        """The field data give the period, even if only one piece has it. Different periods in two pieces are refused."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
@@ -339,8 +339,8 @@ class Program(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.path("alone/" + name), self.path("ranks/" + name), shallow=False), name)
 
     def test_film(self):
-        """Processes write the same bytes as one process: a film at stored times and between them, its tables, and gauges. A step that
-        fails is named once, and all other steps are made."""
+        """Processes write the same bytes as one process: a film at stored times and between them, its tables, gauges, and values at
+        points. A step that fails is named once, and all other steps are made."""
         steps = self.write_series()
         gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1"]
         points = self.path("points.csv")

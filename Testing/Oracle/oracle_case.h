@@ -46,8 +46,9 @@ extern "C"
     int has_euler, euler; /* what the Euler number of the untrimmed surface must be */
   } oracle_case;
 
-  /* Runs the case up to three times: untrimmed with complete seeds; trimmed with complete seeds, except a weight
-   * without walls; with pairs, unless skip_pairs is set or cubes have levels. The case fails unless all is right. */
+  /* Runs the case up to three times: untrimmed with complete seeds; trimmed with complete seeds, unless the weight sum
+   * is contoured without walls; untrimmed with pairs, unless skip_pairs is set or cubes have levels. The case fails
+   * unless all is right. */
   void oracle_run_case(oracle_suite* suite, const oracle_case* at);
 
 #ifdef __cplusplus

@@ -106,8 +106,8 @@ static void run_variant(
   particle_set_free(&set);
 }
 
-/* ---- every combination of kernel, field and cube factor; the first kernel with all scales of h, the others with one
- * scale each in turn ---- */
+/* ---- every combination of kernel, field and cube factor: for the first kernel with all scales of h, for other kernels
+ * with one of the scales in turn ---- */
 
 static void run_matrix(oracle_suite* suite)
 {

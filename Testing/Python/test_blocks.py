@@ -96,7 +96,7 @@ class TestApart(unittest.TestCase):
         self.assertTrue(surface_of(run(extract, water)[0].GetPartition(0)) == self.alone)
 
     def test_sums(self):
-        """Statistics of a run's costs are summed over all blocks, and the fraction of the progress never falls."""
+        """The number of bricks is summed over all blocks, the memory's peak is the greatest of any block, and the progress never falls."""
         extract, seen = sphere(), [0]
         run(extract, **APART, KeepDeviceData=0)
         bricks, peak = statistic(extract, "Bricks"), statistic(extract, "DeviceBytesPeak")

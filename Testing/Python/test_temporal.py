@@ -281,8 +281,8 @@ class TestTemporal(unittest.TestCase):
         self.assertLess(abs(values_of(surface, "Velocity")[:, 2] + 0.1).max(), 1e-5)  # All particles fall at the same speed.
 
     def test_types_of_data(self):
-        """Unstructured grids and blocks keep their class. If the input has cells, each particle gets a vertex in the
-        output."""
+        """Unstructured grids become poly data, and blocks stay blocks. If the input has cells, each particle gets a
+        vertex in the output."""
         def grid(time):
             result = vtkUnstructuredGrid()
             result.ShallowCopy(rotating(time))

@@ -48,7 +48,7 @@ class Command(Case):
             self.assertTrue(mine == its, words)
 
     def test_lines(self):
-        """A table of lines has the same columns and numbers as the program's. A surface cannot be written as a
+        """Tables and .obj files of lines hold what the program's hold. A surface cannot be written as a
         table."""
         line = np.arange(20) * 0.1
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, [0.0]), -1).reshape(-1, 3))

@@ -327,8 +327,8 @@ VECTORS = "20 0 0 1\n4 20 0 2\n2 3 20 3\n"
 XYZ = 'Properties=species:S:1:pos:R:3 Lattice="{}" pbc="{}"'
 TWO = 'A 1 2 3\nB 4 5 6\n'
 
-# Each case has a file's name, its text, and what the program and Python's reader must do with the file: refuse it with a
-# sentence that has these words (the program's|Python's, if they differ), or read it with this period.
+# Each case has a file's name, its text, and words of the sentence with which the program and Python's reader must refuse the
+# file (the program's|Python's, if they differ). None: both must read the same from it, with the period in PERIODS.
 CASES = {
     "columns": ("a.csv", "x,y,z,Rhop,Vel:0,Vel:1,Vel:2\n1,2,3,1000,1,2,3\n4,5,6,1001,4,5,6\n", None),
     "names that stand twice": ("a.csv", "x,y,z,a,a,a_\n1,2,3,4,5,6\n4,5,6,7,8,9\n", None),

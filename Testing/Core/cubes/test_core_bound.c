@@ -6,9 +6,9 @@
 
 #include "core_fixture.h"
 
-/* The first kernel writes for each box (its first brick, and its edge in cubes) bounds of the
- * field: low, high and their rounding; weight and its rounding; count of particles, state. The
- * second kernel writes which bricks are proved to be inside. */
+/* A box is given by its first brick (4 x 4 x 4 cubes) and its edge in cubes. For each box test_bound writes seven
+ * numbers: the field's lower and upper bound and their rounding error, the weight's upper bound and its rounding error,
+ * the number of particles, and the state. test_inside writes whether each brick is proved to be inside. */
 static const char source[] =
   "__kernel void test_bound(MCOR_GRID_PARAMS, const int box_count, const real iso,\n"
   "  const real node_threshold, __global const int4* boxes, __global real* out)\n"
@@ -172,8 +172,7 @@ static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, 
   return box;
 }
 
-/* Extracts an empty surface, which leaves the grid on the device, and adds the kernels in `source`
- * to the program. */
+/* Extracts an empty surface, which leaves the grid on the device, and adds the kernels in `source` to the program. */
 static void make_grid(mcor_context* context, const particle_set* set, const mcor_options* options)
 {
   const mcor_input input = core_input_to_keep(set);
@@ -261,8 +260,7 @@ static void test_bound(void** state)
   }
 }
 
-/* So many equal particles lie in one place that rounding errors add up: each step rounds in the
- * same direction. */
+/* So many equal particles lie in one place that rounding errors add up: each step rounds in the same direction. */
 static void test_many_particles(void** state)
 {
   static const struct
@@ -290,8 +288,7 @@ static void test_many_particles(void** state)
   }
 }
 
-/* Counts the nodes of a brick where the weight sum is at least iso. The brick begins at node
- * `first`. */
+/* Counts the nodes of a brick where the weight sum is at least iso. */
 static int count_above(
   const particles* p, const mcor_options* options, const cl_int4* brick, double iso)
 {

@@ -47,8 +47,7 @@ static lattice make_lattice(int ends, int pitch, uint64_t seed)
   return l;
 }
 
-/* Returns the vertex on the edge from a node along an axis. A new vertex gets a random place on the
- * edge. */
+/* Returns the vertex on the edge from a node along an axis. A new vertex gets a random place. */
 static int32_t vertex_on(lattice* l, int node, int axis, int length)
 {
   int32_t* vertex = l->vertex + 3 * (size_t)node + axis;
@@ -280,8 +279,7 @@ static void check_inner_sides(
   }
 }
 
-/* Adds a cell whose nodes are `step` apart. `split` says which middles of its edges and faces are
- * nodes. */
+/* Adds a cell of edge `step`. `split` says which middles of its edges and faces are nodes. */
 static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
 {
   static const int stride[3] = { 1, 3, 9 };

@@ -166,8 +166,7 @@ static void test_line(void** state)
   }
 }
 
-/* Checks random sets: two particles are a pair if the smoothing length of either reaches the other.
- * */
+/* Checks random sets: two particles are a pair if either's smoothing length reaches the other. */
 static void test_pairs(void** state)
 {
   for (uint64_t seed = 1; seed <= 4; ++seed)

@@ -38,8 +38,7 @@ static void level_limit(void** state)
   context->run.options = NULL;
 }
 
-/* Checks the level of cubes for a smoothing length: level L begins at exactly 2^L times the
- * smallest h. */
+/* Level L of cubes begins at a smoothing length of exactly 2^L times the smallest h. */
 static void levels_of_particles(void** state)
 {
   assert_int_equal(mcor_tree_level_of(1, 1, 24), 0);

@@ -141,8 +141,7 @@ static void test_input(void** state)
   close_pocl(&own);
 }
 
-/* Results are written in the buffer's type and at its stride; all other bytes of the buffer
- * stay. */
+/* Results are written in the buffer's type and stride. All other bytes of the buffer stay. */
 static void test_store(void** state)
 {
   mcor_context* context = *state;

@@ -38,8 +38,8 @@ static double share_of_ball(double x[3], double radius)
   return in / 8000.0;
 }
 
-/* A ball or cylinder of lattice particles must have the curvatures of its radius: the mean curvature to within 1e-3,
- * the Gaussian one to within 2e-3. axes: 3 for a ball, 2 for a cylinder. */
+/* A ball or cylinder of lattice particles must have the curvatures of its radius r: mean curvature times r is right to
+ * within 1e-3, Gaussian curvature times r^2 to within 2e-3. axes: 3 for a ball, 2 for a cylinder. */
 static void test_ball_and_cylinder(void** state)
 {
   static const struct

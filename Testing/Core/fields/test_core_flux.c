@@ -129,7 +129,7 @@ static mcor_flux_reading flux_of(
   return found.readings[0];
 }
 
-/* Checks that the flux is rho v A to within 1e-6. */
+/* Checks the area, the volume flux `flux`, and the mass flux for density 1000, each to within 1e-6. */
 static void check_reading(
   const mcor_flux_reading* r, double area, double flux, const char* what, size_t number)
 {

@@ -74,8 +74,7 @@ static void check_line(const oracle_field* field, const mcor_gauge_line* line,
     const double error = fabs(weight_at(field, line, at[i] / length) - LEVEL);
     CORE_CHECK(error <= ERROR_OF_WEIGHT, number, error);
     CORE_CHECK(i == 0 || at[i] >= at[i - 1], number);
-    /* The gauge's samples are 10 steps apart. Crossings less than 5 steps apart are a close pair.
-     * */
+    /* The gauge's samples are 10 steps apart. Crossings less than 5 steps apart are a close pair. */
     counts->close_pairs += i > 0 && at[i] - at[i - 1] < 5 * step;
   }
   double before = weight_at(field, line, 0), depth = 0;
@@ -195,7 +194,7 @@ static void test_noise(void** state)
 }
 
 /* Checks that computed volumes give the right water level too, though particles near the top lack half of their
- * neighbours: with any kernel and usual smoothing length, with masses or without, in space and in a plane. */
+ * neighbours: with all kernels but M'4 and usual smoothing lengths, with masses or without, in space and in a plane. */
 static void test_still_pool_of_computed_volumes(void** state)
 {
   static const struct

@@ -38,9 +38,9 @@ static mcor_samples probe(mcor_context* context, const particle_set* set,
   return samples;
 }
 
-/* Compares all samples at one point with the oracle. scale: the size of the array's values. steep: allowed errors of
- * gradients are relative to the largest component of the expected gradient, or to 1 if that is larger; returns this
- * number. Otherwise returns 1. */
+/* Compares all samples at one point with the oracle. scale: the size of the array's values. Returns the number
+ * that allowed errors of gradients are relative to: if `steep`, the largest component of the expected gradient, but at
+ * least 1; else 1. */
 static double probe_compare(const oracle_field* field, const double point[3], double threshold,
   double scale, bool steep, double tolerance, const mcor_samples* samples, int64_t i)
 {

@@ -93,8 +93,7 @@ static column make_column(mcor_sph_kernel kernel, int is_plane, const mcor_proje
   return c;
 }
 
-/* Adds what a particle contributes to each pixel of every `step`-th row, beginning at row `first`. Returns the largest
- * contribution. */
+/* Adds what a particle contributes to every `step`-th pixel. Returns the largest contribution. */
 static double add_particle(const column* c, const mcor_projection* view, const double x[3],
   double h, double amount, double cells_per_h, int step, double* image)
 {
@@ -288,7 +287,7 @@ static void test_brute_force(void** state)
         x[a] -= is_periodic ? 1.6 * floor((x[a] + 0.7) / 1.6) : 0;
       }
       const double h = 0.9 * set.smoothing_length[i];
-      /* A period has images on all sides of the line of sight. */
+      /* In a view along an axis, the period's images lie on all sides of the line of sight. */
       const int images = is_periodic && d % 3 < 2 ? 1 : 0;
       for (int u = -images; u <= images; ++u)
       {

@@ -10,7 +10,7 @@
 static const int sizes[] = { 0, 1, 2, 15, 16, 17, 255, 1000, 40000, 100003 };
 #define SIZE_COUNT (int)(sizeof sizes / sizeof sizes[0])
 
-/* Kinds of key sets: dense, with many repeats, sparse over the whole range, all equal, all but one equal. */
+/* Kinds of key sets: random keys below `limit`. In the last kind all keys but one are equal. */
 typedef struct key_kind
 {
   const char* name;

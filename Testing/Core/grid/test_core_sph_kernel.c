@@ -83,8 +83,8 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
   }
 }
 
-/* Checks that W is exactly 0 from the support radius on, not 0 just inside, and has slope 0 at 0.
- * */
+/* Checks that W and its slope are exactly 0 from the support radius on, that W is not 0 just inside,
+ * and that the slope is 0 at the centre. */
 static void check_support(mcor_context* context, mcor_sph_kernel kernel)
 {
   const double support = mcor_support_factor(kernel);

@@ -68,8 +68,8 @@ static void test_far_reach(void** state)
   }
 }
 
-/* Checks that the unit of the scalar does not change the mesh, and that all cut vertices are exact
- * in any unit. */
+/* Checks that the unit of the scalar changes no number of points or cut vertices, and that every cut
+ * vertex lies on the iso value in any unit. */
 static void test_magnitude(void** state)
 {
   const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };

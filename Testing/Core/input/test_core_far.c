@@ -127,7 +127,8 @@ static int compare_hashes(const void* a, const void* b)
   return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
-/* Checks medians over the 32 fluid particles with the least hashes; absent particles are not sampled. */
+/* Checks the medians of neighbours, spacing and smoothing length over the 32 fluid particles whose positions have the
+ * least hashes. Absent particles must play no part. */
 static void test_measures(void** state)
 {
   enum

@@ -474,8 +474,8 @@ static void test_computed_volumes(void** state)
   expect_good(*state);
 }
 
-/* Checks that lengths in units from 2^-300 to 2^300 give the same surface, also with estimated smoothing lengths and
- * normals, and that more extreme units are refused. */
+/* Checks that positions times 2^-300 and 2^300 give the same surface, equally scaled, with the same normals by
+ * triangles. Smoothing lengths are estimated. More extreme factors must be refused. */
 static void test_units_of_length(void** state)
 {
   const double units[] = { 1, 0x1p-300, 0x1p300, 0x1p-340, 0x1p340 };
@@ -558,8 +558,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* Checks whether a free surface is suggested, for particles that fill a cube, and then for the same without a part of
- * one octant. There are enough particles for several threads. */
+/* Checks when a free surface is suggested: for a full cube, if it is a liquid or has solids; for a cube without a part
+ * of one octant, always. There are enough particles for several threads. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

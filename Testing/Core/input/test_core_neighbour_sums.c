@@ -128,7 +128,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
-  /* A call may ask for sums at the first few particles only, with all particles as neighbours. Ignored particles must
+  /* A call may ask for the first few particles' lengths only, with all particles as neighbours. Ignored particles must
    * change nothing. */
   input = core_input(&set);
   const int64_t part = count / 3;

@@ -139,7 +139,7 @@ static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
   return same;
 }
 
-/* Makes lines: some along the cut axis, through all boxes; one through several periods; one outside. */
+/* Makes random lines. Every third leads along `axis` through all boxes, one through several periods, one is outside. */
 static void make_lines(mcor_gauge_line* lines, int axis)
 {
   uint64_t seed = 11;

@@ -169,7 +169,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   assert_memory_equal(
     moved.gradients[0], found.gradients[0], 3 * (size_t)set.count * sizeof(double));
   mcor_free_derivatives(&moved);
-  /* Shifts the particles, so that others lie next to the period's sides. */
+  /* After each shift, other particles lie next to the period's sides. */
   for (int shift = 1; shift < 4; ++shift)
   {
     for (int64_t i = 0; i < 3 * set.count; ++i)

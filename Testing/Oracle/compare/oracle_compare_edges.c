@@ -348,8 +348,8 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   {
     const int64_t from = lattice->segments[s].from;
     const int64_t to = lattice->segments[s].to;
-    /* Segments that rounding decides are not checked. With the paper's seeds a component may be missing although its
-     * crossings on a face have vertices: another component that touches it in pinched edges may own the vertices. */
+    /* Segments are left out if rounding decides them or if, with MCOR_PAIRS, both edges are pinched: pairs may miss a
+     * component of the surface, though its pinched edges have vertices of another component. */
     const int may_lack = state->options->seeds == MCOR_PAIRS &&
       compare_pinched(&lattice->edges[from]) && compare_pinched(&lattice->edges[to]);
     if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 || may_lack ||
@@ -367,7 +367,8 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   }
 }
 
-/* Checks sides with only one triangle: each must be a cut, or a segment that only one cell has. */
+/* Checks each triangle side that no second triangle shares. Trimming must have made both ends; or one end, if the other
+ * is on an edge with a cell that is not valid; or the side must be a segment of only one cell. */
 static void compare_boundary(compare_state* state, oracle_map* wanted)
 {
   const mesh_report* mesh = state->mesh;

@@ -64,7 +64,7 @@ class Benchmark:
         return case
 
     def describe(self):
-        """Returns machine, device and versions as text."""
+        """Adds the machine, the device and the versions to the report. Returns {name: fact}."""
         found = self.program.run(self.sets.get("tank", self.sizes[0]), tables.ISOSURFACE)
         facts = {"machine": machine(), "device": found["device"], "platform": found["platform"],
                  "program": f"{found['name']}, on VTK {found['vtk']}", "python": platform.python_version(), **versions(),
@@ -84,8 +84,8 @@ def versions():
 
 
 def find_nonsense(value, path="results"):
-    """Returns the places of figures that no measurement gives: numbers that are not finite, and seconds that are not
-    above 0."""
+    """Returns the places, such as "results.a.seconds", of impossible figures: numbers that are not finite, and seconds that
+    are not above 0."""
     if isinstance(value, dict):
         return [bad for key, v in value.items() for bad in find_nonsense(v, f"{path}.{key}")]
     if isinstance(value, (list, tuple)):

@@ -18,7 +18,7 @@ import numpy as np
 
 
 def splash(spacing, seconds):
-    """Returns positions and velocities: of a tank with a wave that runs outwards from the middle, and of drops that fly up from there."""
+    """Returns positions and velocities: of a tank with a wave that runs outwards from the middle, and of drops that fly from it."""
     line = np.arange(0, 1, spacing)
     tank = np.stack(np.meshgrid(line, line, np.arange(0, 0.3, spacing)), -1).reshape(-1, 3)
     radius = np.hypot(tank[:, 0] - 0.5, tank[:, 1] - 0.5)

@@ -350,8 +350,8 @@ def run_convert(arguments):
 
 
 def read_surface(paths):
-    """Reads .vtp files that are pieces of one surface. Returns their time, or None if they have no time, and the whole
-    surface."""
+    """Reads .vtp files, or .pvtp lists of such files, that are pieces of one surface. Returns their time, or None if they have no
+    time, and the whole surface."""
     time, points, triangles, line_points, lengths, arrays, count = None, [], [], [], [], {}, 0
     for path in [piece for path in paths for piece in (list_pieces(path) if path.suffix.lower() == ".pvtp" else [path])]:
         if path.suffix.lower() != ".vtp" or not path.is_file():

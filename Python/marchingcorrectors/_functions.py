@@ -383,7 +383,7 @@ FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, r
 
 
 def _as_section(section, name, units):
-    """Returns a section's kind of shape, points (n, 3) and radius."""
+    """Returns a section's shape, a number of mcor_section_shape; points (n, 3), of a disc the centre and the normal; and the radius."""
     def numbers(values, shape):
         array = contiguous(values, "section").astype(np.float64)
         if array.shape != shape:

@@ -147,7 +147,7 @@ _ready_in = None  # OpenCL was started in this process.
 
 
 def start():
-    """Prepares OpenCL. Must be called before any other call that uses OpenCL."""
+    """Raises DeviceError if OpenCL was started before this process was forked. Comes before each call that uses OpenCL."""
     global _ready_in
     with _state_lock:
         if _ready_in is None:

@@ -141,8 +141,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns the vtkCellArray that has the vertex cells (of a grid: all cells; None if there are no such cells), and the type of
-    each cell. The types of the vtkCellArray's own cells come first; other cells may have 0."""
+    """Returns the vtkCellArray with the vertex cells of poly data, or with all cells of an unstructured grid, else None; and the
+    type of each cell. The types of the vtkCellArray's own cells come first; other cells may have 0."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])

@@ -83,7 +83,7 @@ struct View
   Vector ToEye;
 };
 
-/// Returns the view from the direction `toEye`. If this is parallel to `up`, another axis points upwards.
+/// Returns the view from the direction `toEye`. If `toEye` is parallel to `up`, another axis is upwards.
 View MakeView(Vector up, Vector toEye)
 {
   vtkMath::Normalize(toEye.GetData());

@@ -207,7 +207,8 @@ const Option* FindOption(const std::string& name)
   return found == all.end() ? nullptr : &*found;
 }
 
-/// Refuses an option that does not act in the job's mode, or needs another one that is not given.
+/// Refuses an option that does not act in the job's mode, or that lacks what it needs: another option, or an
+/// ending of the output.
 void CheckOption(const Job& job, const Option& option)
 {
   const std::string name = option.Name;

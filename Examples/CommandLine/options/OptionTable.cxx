@@ -21,7 +21,6 @@ namespace
 using Filter = vtkMarchingCorrectors;
 using Text = const std::string&;
 
-/// Sets a property of all filters.
 template <typename... T>
 void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T...), T... values)
 {

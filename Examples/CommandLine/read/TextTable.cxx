@@ -207,8 +207,8 @@ std::string ListNames(const Table& table)
 using Indices = std::vector<std::size_t>;
 
 /// Lists the arrays of a table without the columns `positions`, each with its name and columns, in the order of
-/// their first columns. Columns whose names tell components make one vector; each other column is an
-/// array.
+/// their first columns. 2, 3, 6 or 9 columns whose names tell all components of a vector are one array; each
+/// other column is an array.
 std::map<std::size_t, std::pair<std::string, Indices>> FindArrays(
   const Table& table, const Indices& positions = {})
 {

@@ -37,8 +37,8 @@ void PrepareForEnding();
 /// own.
 void KeepWatchOfCrashes();
 
-/// Names possible causes of a crash. If PoCL has kept a half-written file, it crashes whenever it
-/// loads this file. Names the folder of such files if it exists, unless `device` is the built-in one.
+/// Names possible causes of a crash. PoCL crashes whenever it loads a half-written file from its cache; so,
+/// unless `device` is the built-in one, names the cache's folder if there is one.
 std::string FaultsOfDrivers(const std::string& device);
 
 /// Sets the sentence for a crash while this object lives: "FAILURE: ...; HINT". isSilent: only this
@@ -57,8 +57,8 @@ private:
 };
 
 /// Makes a new file, and appends six characters to `name`, which then names the file. Returns the
-/// file's descriptor; below 0, `name` is "", and errno tells why. The file is removed if a crash or a
-/// signal ends the program before EndTemporary() is called.
+/// file's descriptor; if it is below 0, `name` is "", and errno tells why. The file is removed if a
+/// crash or a signal ends the program before EndTemporary() is called.
 int MakeTemporary(std::string& name);
 
 /// Lets the file replace `target` or, if `target` is empty, removes the file. If the file cannot

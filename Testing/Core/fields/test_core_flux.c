@@ -538,6 +538,8 @@ static void test_weird(void** state)
   {
     refuse(*state, &input, &options, &off[i], "is not a line in the plane y = 8 of the particles");
   }
+  const shape point = { MCOR_SECTION_LINES, 4, { 5, 8, 3, 5, 8, 3, 6, 8, 3, 6, 8, 3 }, 0 };
+  refuse(*state, &input, &options, &point, "SECTION_WITHOUT_AREA");
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_uniform, test_uniform_in_a_plane,

@@ -165,29 +165,62 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Keeps the triangles whose corners still differ. Copies each appended vertex that is still in use
- * to the place of the vertex that it replaces. */
-static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
+/* Triangles that are left, at the beginning of each slice: `cells`, if not NULL, goes with them. */
+typedef struct mcor_leaving
 {
-  mcor_context* context = bunches->context;
-  mcor_mesh* mesh = &context->mesh;
-  size_t left = 0, count = 0;
-  for (int64_t t = 0; t < bunches->triangle_count; ++t)
+  const mcor_bunches* bunches;
+  cl_ulong* cells;
+  int64_t first[MCOR_SLICES], left[MCOR_SLICES];
+} mcor_leaving;
+
+/* Keeps the triangles whose corners still differ. */
+static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_leaving* leaving = data;
+  const mcor_bunches* bunches = leaving->bunches;
+  int64_t to = first;
+  for (int64_t t = first; t < last; ++t)
   {
     int32_t place[3];
     if (mcor_places_of(bunches, t, place))
     {
-      for (size_t c = 0; c < 3; ++c)
+      for (int c = 0; c < 3; ++c)
       {
-        bunches->triangles[3 * left + c] =
+        bunches->triangles[3 * to + c] =
           place[c] < bunches->vertex_count ? place[c] : bunches->points[place[c]].replaces;
       }
-      if (cells)
+      if (leaving->cells)
       {
-        cells[left] = cells[t];
+        leaving->cells[to] = leaving->cells[t];
       }
-      ++left;
+      ++to;
     }
+  }
+  leaving->first[slice] = first;
+  leaving->left[slice] = to - first;
+}
+
+/* Keeps what is left of the triangles. Copies each appended vertex that is still in use to the place
+ * of the vertex that it replaces. */
+static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_leaving leaving = { .bunches = bunches, .cells = cells };
+  const size_t width = 3 * sizeof(cl_int);
+  size_t left = 0, count = 0;
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_keep_slice, &leaving, &slices));
+  for (int i = 0; i < slices; ++i)
+  {
+    const size_t from = (size_t)leaving.first[i], n = (size_t)leaving.left[i];
+    memmove(bunches->triangles + 3 * left, bunches->triangles + 3 * from, n * width);
+    if (cells)
+    {
+      memmove(cells + left, cells + from, n * sizeof *cells);
+    }
+    left += n;
   }
   for (int32_t place = bunches->vertex_count; place < bunches->point_count; ++place)
   {
@@ -199,7 +232,7 @@ static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_i
     }
   }
   mesh->triangle_count = (int)left;
-  MCOR_TRY(mcor_write(context, &mesh->triangles, bunches->triangles, 3 * left * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &mesh->triangles, bunches->triangles, left * width));
   if (cells)
   {
     MCOR_TRY(mcor_write(context, &context->box.cells, cells, left * sizeof *cells));

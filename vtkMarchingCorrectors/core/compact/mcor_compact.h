@@ -38,11 +38,11 @@ enum
  * other is a bunch by itself, and stays apart. */
 typedef struct mcor_bunch_vertex
 {
-  uint64_t key;        /* the lattice node that the vertex belongs to, or MCOR_FROZEN */
-  int32_t first, next; /* its bunch's first vertex; the next vertex of the bunch, or -1 */
-  int32_t star;        /* of a bunch: a corner of its last triangle; see `before` below */
-  int32_t now;         /* the present place in the mesh of the vertex, or of its merged bunch */
-  atomic_uchar state;  /* of a bunch */
+  uint64_t key;                /* the lattice node that the vertex belongs to, or MCOR_FROZEN */
+  _Atomic int32_t first, next; /* its bunch's first vertex; another vertex of the bunch, or -1 */
+  int32_t star;                /* of a bunch: a corner of its last triangle; see `before` below */
+  int32_t now;        /* the present place in the mesh of the vertex, or of its merged bunch */
+  atomic_uchar state; /* of a bunch */
   atomic_bool wide; /* the vertex, or its merged bunch, may move: it is a sliver's widest corner */
   bool held;        /* keys of cuts refer to the vertex, even if it is merged */
   bool leans;       /* of a bunch: it is merged only as long as all sure bunches beside it are */
@@ -76,8 +76,8 @@ typedef struct mcor_bunches
   double edge[3]; /* of the lattice, in cubes */
   /* The mesh before merging. */
   int march_count, vertex_count, triangle_count;
-  cl_int* triangles;      /* [triangle_count][3] */
-  mcor_bunch_vertex* of;  /* [vertex_count] */
+  cl_int* triangles;     /* [triangle_count][3] */
+  mcor_bunch_vertex* of; /* [vertex_count] */
   int32_t*
     before; /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the
                     * bunch to a corner of the list's previous triangle; -1: there is none */

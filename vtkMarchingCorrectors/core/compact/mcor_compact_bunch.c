@@ -111,46 +111,54 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
-/* Returns the first of the vertices to which v is joined so far. */
-static int32_t mcor_first_of(mcor_bunch_vertex* of, int32_t v)
+/* Returns the first of the vertices to which v is joined so far. Each vertex leads to a lower
+ * one. */
+static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
 {
-  while (of[v].first != v)
+  for (int32_t first; (first = of[v].first) != v; v = first)
   {
-    of[v].first = of[of[v].first].first;
-    v = of[v].first;
   }
   return v;
 }
 
-static void mcor_join_vertices(mcor_bunches* bunches)
+/* Joins vertices of one node that share an edge. If another thread has joined `high` meanwhile, its
+ * new first vertex is joined. */
+static void mcor_join_slice(void* data, int slice, int64_t first, int64_t last)
 {
+  const mcor_bunches* bunches = data;
   mcor_bunch_vertex* of = bunches->of;
-  for (int64_t t = 0; t < bunches->triangle_count; ++t)
+  for (int64_t i = 3 * first; i < 3 * last; ++i)
   {
-    const cl_int* corner = bunches->triangles + 3 * t;
-    const uint64_t key[3] = { of[corner[0]].key, of[corner[1]].key, of[corner[2]].key };
-    for (int c = 0; c < 3; ++c)
+    const cl_int v = bunches->triangles[i], w = bunches->triangles[i % 3 < 2 ? i + 1 : i - 2];
+    if (of[v].key != of[w].key || of[v].key == MCOR_FROZEN)
     {
-      const int d = c < 2 ? c + 1 : 0;
-      if (key[c] == key[d] && key[c] != MCOR_FROZEN)
-      {
-        const int32_t p = mcor_first_of(of, corner[c]), q = mcor_first_of(of, corner[d]);
-        of[p > q ? p : q].first = p > q ? q : p;
-      }
+      continue;
+    }
+    int32_t p = mcor_first_of(of, v), q = mcor_first_of(of, w);
+    while (p != q)
+    {
+      int32_t high = p > q ? p : q;
+      q = p > q ? q : p;
+      p = atomic_compare_exchange_strong(&of[high].first, &high, q) ? q : mcor_first_of(of, high);
     }
   }
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  (void)slice;
+}
+
+/* Makes a list of vertices for each bunch. The order in a list varies, and decides nothing. */
+static void mcor_list_vertices(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_bunch_vertex* of = ((const mcor_bunches*)data)->of;
+  for (int32_t v = (int32_t)first; v < last; ++v)
   {
-    of[v].first = of[of[v].first].first; /* the lower vertex already has the bunch's first */
-  }
-  for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
-  {
-    if (of[v].first != v)
+    const int32_t bunch = mcor_first_of(of, v);
+    if (bunch != v)
     {
-      of[v].next = of[of[v].first].next;
-      of[of[v].first].next = v;
+      of[v].first = bunch;
+      of[v].next = atomic_exchange(&of[bunch].next, v);
     }
   }
+  (void)slice;
 }
 
 /* Makes a list of triangles for each bunch. A triangle is listed once for each of its bunches, by
@@ -379,8 +387,9 @@ mcor_status mcor_find_bunches(mcor_bunches* bunches)
   mcor_bunch_vertex* of = bunches->of;
   const int count = bunches->vertex_count;
   MCOR_TRY(mcor_key_vertices(bunches));
-  mcor_join_vertices(bunches);
-  MCOR_TRY(mcor_report_launch(context));
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->triangle_count, MCOR_HEAVY_GRAIN, mcor_join_slice, bunches, NULL));
+  MCOR_TRY(mcor_parallel_run(context, count, MCOR_HEAVY_GRAIN, mcor_list_vertices, bunches, NULL));
   mcor_list_triangles(bunches);
   MCOR_TRY(mcor_report_launch(context));
   MCOR_TRY(mcor_parallel_run(context, count, MCOR_HEAVY_GRAIN, mcor_merge_slice, bunches, NULL));

@@ -192,8 +192,8 @@ static mcor_status mcor_add_disc(
 }
 
 /* Appends the pieces of a section, whose number of points is checked already. *has_size becomes
- * false if the section has no area; a section of lines needs none. In two dimensions, area outside
- * of the plane counts, too. */
+ * false if the section has no area or, if it consists of lines, no length. In two dimensions, area
+ * outside of the plane counts, too. */
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];
@@ -256,6 +256,7 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_
             : mcor_normalise(normal) > 0 ? mcor_add_line(job, number, x, along, normal)
                                          : MCOR_OK);
       }
+      *has_size = job->found[number].area > 0;
       return MCOR_OK;
   }
 }

@@ -147,7 +147,6 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
       job->found[piece.section].near += is_near && job->is_counting ? piece.size : 0;
       if (!is_near || !mcor_owns_point(&job->base, middle))
       {
-        job->area_done += piece.size;
         continue;
       }
       MCOR_FAIL_IF(++job->cells > MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
@@ -295,7 +294,6 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
     found->sum[s] += llrint(fmin(fmax(sum[1][s] / found->unit[s], -0x1p62), 0x1p62));
   }
   found->sum[MCOR_FLUX_SUMS] += is_reached && !is_halved;
-  job->area_done += is_halved ? 0 : size;
   return MCOR_OK;
 }
 
@@ -306,11 +304,7 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
   mcor_flux_job* job = (mcor_flux_job*)base;
   mcor_context* context = base->context;
   const size_t n = MCOR_LEVEL_BATCH;
-  double whole = 0;
-  for (int64_t s = 0; s < job->section_count; ++s)
-  {
-    whole += job->found[s].area;
-  }
+  double all_cells = 1;
   job->smoothing_length = context->run.options->h_scale * context->measure.h_min;
   job->batch = malloc(n / (size_t)job->form->points * sizeof *job->batch);
   job->weight = malloc(5 * n * sizeof *job->weight);
@@ -320,13 +314,14 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
   for (int pass = 0; pass < 2; ++pass)
   {
     job->is_counting = pass == 0;
-    job->cells = job->area_done = 0;
+    all_cells += job->cells;
+    job->cells = 0;
     job->next = 0;
     for (int count = 1; count > 0;)
     {
       MCOR_TRY(job->is_counting
           ? mcor_report_launch(context)
-          : mcor_report(context, "flux", 0.2 + 0.8 * job->area_done / whole, 1));
+          : mcor_report(context, "flux", 0.2 + 0.8 * job->cells / all_cells, 1));
       MCOR_TRY(mcor_take_pieces(job, &count));
       if (job->is_counting || count == 0)
       {

@@ -61,10 +61,10 @@ typedef struct mcor_flux_job
   MCOR_LIST(mcor_flux_piece) pieces; /* the pieces of all sections */
   bool is_counting;                  /* the first pass, which only counts cells */
   /* In this pass: index of the next one of `pieces`; halves of earlier pieces, which are treated
-   * first; how many cells there were so far; the area of the pieces that are done. */
+   * first; how many cells there were so far. */
   int64_t next;
   MCOR_LIST(mcor_flux_piece) parts;
-  double cells, area_done;
+  double cells;
   mcor_flux_piece* batch; /* pieces under way */
   /* Samples of the pieces in `batch`. */
   double *weight, *velocity, *density;

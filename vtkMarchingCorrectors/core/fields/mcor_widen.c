@@ -56,7 +56,7 @@ typedef struct mcor_widen_run
    * all. */
   cl_int* originals;
   void *order, *weight, *inv_h; /* views */
-  void *factors, *is_outside; /* views; NULL if only volumes are wanted */
+  void *factors, *is_outside;   /* views; NULL if only volumes are wanted */
 } mcor_widen_run;
 
 static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
@@ -198,27 +198,9 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-static mcor_status mcor_widen_particles(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_widen_run* run)
-{
-  MCOR_TRY(mcor_check_input(context, input, options));
-  if (input->count == 0) /* no kernels are chosen, so there are no statistics */
-  {
-    return MCOR_OK;
-  }
-  mcor_bound_by_box(context, options);
-  MCOR_TRY(mcor_prepare(context, input, options));
-  if (context->grid.count > 0)
-  {
-    MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.2, 0.8));
-    MCOR_TRY(mcor_find_factors(context, run));
-    MCOR_TRY(mcor_deliver_factors(context, input, run));
-  }
-  return mcor_finish_field(context);
-}
-
 /* Finds the factors of all particles. If there are no globals, the box does not limit this call: it
- * only tells which particles are too far away to matter, see mcor_leave_out_far. */
+ * only tells which particles are too far away to matter, see mcor_leave_out_far. Without particles,
+ * no kernels are chosen, so there are no statistics. */
 static mcor_status mcor_run_widen(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -231,7 +213,19 @@ static mcor_status mcor_run_widen(
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->run.widest = run->widest;
   context->run.options = &own;
-  const mcor_status status = mcor_widen_particles(context, input, &own, run);
+  mcor_status status = mcor_check_input(context, input, &own);
+  if (input->count > 0)
+  {
+    mcor_bound_by_box(context, &own);
+    MCOR_THEN(status, mcor_prepare(context, input, &own));
+    if (context->grid.count > 0)
+    {
+      MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.2, 0.8));
+      MCOR_THEN(status, mcor_find_factors(context, run));
+      MCOR_THEN(status, mcor_deliver_factors(context, input, run));
+    }
+    MCOR_THEN(status, mcor_finish_field(context));
+  }
   mcor_release_run(context, run);
   context->run.options = options;
   return status;
@@ -250,8 +244,8 @@ static double mcor_widen_iso(const mcor_options* options)
   return iso;
 }
 
-mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_widening* widening)
+mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mcor_options* options,
+  mcor_widening* widening)
 {
   if (!context || !widening)
   {

@@ -165,10 +165,8 @@ mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, boo
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
   mcor_status (*visit)(void* data, const mcor_cap_nodes* nodes, int64_t at, const cl_int node[3]),
   void* data);
-/* Loads the nodes of the lower or upper side of an axis. opposite: the nodes of the period's other
- * side if they are loaded already, else NULL. */
-mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
-  const mcor_cap_nodes* opposite, mcor_cap_nodes* nodes);
+/* Loads the nodes of the lower or upper side of an axis. */
+mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes);
 void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
 
 /* ---- mcor_cap_make.c: the squares ---- */

@@ -458,25 +458,15 @@ mcor_status mcor_cap(mcor_context* context)
   mcor_status status = mcor_map_all(context, views, mapped);
   MCOR_THEN(status, mcor_index_cap_edges(&job));
   /* Caps the lower and the upper side of each axis, if this call's box has them. */
-  for (int axis = 0; axis < 3; ++axis)
+  for (int i = 0; i < 6 && status == MCOR_OK; ++i)
   {
-    const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
-    const bool has[2] = { mcor_has_cap_side(context, axis, 0),
-      mcor_has_cap_side(context, axis, 1) };
-    const bool are_one = has[0] && apart == context->lattice.period[axis];
-    mcor_cap_nodes sides[2] = { { 0 }, { 0 } };
-    for (int upper = 0; upper < 2; ++upper)
+    mcor_cap_nodes nodes = { 0 };
+    if (mcor_has_cap_side(context, i / 2, i % 2))
     {
-      if (status == MCOR_OK && has[upper])
-      {
-        mcor_cap_nodes* nodes = &sides[upper];
-        status =
-          mcor_load_cap_side(context, axis, upper, upper && are_one ? &sides[0] : NULL, nodes);
-        MCOR_THEN(status, mcor_visit_cap_squares(context, nodes, mcor_visit_cap_square, &job));
-      }
+      status = mcor_load_cap_side(context, i / 2, i % 2, &nodes);
+      MCOR_THEN(status, mcor_visit_cap_squares(context, &nodes, mcor_visit_cap_square, &job));
     }
-    mcor_free_cap_nodes(&sides[0]);
-    mcor_free_cap_nodes(&sides[1]);
+    mcor_free_cap_nodes(&nodes);
   }
   const bool places = context->space.axes == 2 && !context->run.options->preview;
   status = status == MCOR_OK && places ? mcor_place_cap_cuts(&job) : status;

@@ -100,16 +100,24 @@ static mcor_status mcor_add_cap_brick(
 }
 
 /* Adds the bricks between two positions, in nodes, and marks them in `clusters`; bricks that are
- * marked already are left out. clusters: masks of bricks, by the key of each cluster's first
- * brick. */
+ * marked already are left out. clusters: masks of bricks, by the key of each cluster's first brick.
+ * ends: the first and the last brick of the last call; particles in a row often reach the same. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes,
-  const double low[3], const double high[3], mcor_table* clusters)
+  const double low[3], const double high[3], mcor_table* clusters, int ends[2][3])
 {
-  int from[3], to[3], c[3];
+  int *from = ends[0], *to = ends[1], c[3];
+  bool is_new = false;
   for (int a = 0; a < 3; ++a)
   {
-    from[a] = (int)fmax(low[a], nodes->range[a][0]) / MCOR_BRICK;
-    to[a] = (int)fmin(high[a], nodes->range[a][1]) / MCOR_BRICK;
+    const int first = (int)fmax(low[a], nodes->range[a][0]) / MCOR_BRICK;
+    const int last = (int)fmin(high[a], nodes->range[a][1]) / MCOR_BRICK;
+    is_new = is_new || first != from[a] || last != to[a];
+    from[a] = first;
+    to[a] = last;
+  }
+  if (!is_new)
+  {
+    return MCOR_OK;
   }
   for (c[2] = from[2] & ~3; c[2] <= to[2]; c[2] += MCOR_CLUSTER)
   {
@@ -150,6 +158,7 @@ static mcor_status mcor_add_reached(
     { &g->pz, bytes, &views[2] }, { &g->inv_h, bytes, &views[3] } };
   const bool is_long = context->cl.real_size == sizeof(cl_double);
   double reach_of[3], per_step[3]; /* in nodes */
+  int ends[2][3] = { { -1 } };
   for (int a = 0; a < 3; ++a)
   {
     reach_of[a] =
@@ -173,7 +182,7 @@ static mcor_status mcor_add_reached(
     }
     if (is_near)
     {
-      status = mcor_add_cap_bricks(context, nodes, low, high, clusters);
+      status = mcor_add_cap_bricks(context, nodes, low, high, clusters, ends);
     }
   }
   return mcor_unmap_all(context, mappings, 4, status);
@@ -223,9 +232,11 @@ mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_c
   const double low[3] = { -INFINITY, -INFINITY, -INFINITY },
                high[3] = { INFINITY, INFINITY, INFINITY };
   mcor_table clusters = { 0 };
+  int ends[2][3] = { { -1 } };
   MCOR_APPEND(context, &nodes->bricks, (mcor_cap_brick){ .key = 0 });
-  mcor_status status = empty_is_above ? mcor_add_cap_bricks(context, nodes, low, high, &clusters)
-                                      : mcor_add_reached(context, nodes, &clusters);
+  mcor_status status = empty_is_above
+    ? mcor_add_cap_bricks(context, nodes, low, high, &clusters, ends)
+    : mcor_add_reached(context, nodes, &clusters);
   MCOR_THEN(status, mcor_number_cap_bricks(context, nodes));
   mcor_table_free(&clusters);
   return status;
@@ -354,32 +365,11 @@ mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* 
   return MCOR_OK;
 }
 
-mcor_status mcor_load_cap_side(
-  mcor_context* context, int axis, int upper, const mcor_cap_nodes* opposite, mcor_cap_nodes* nodes)
+mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes)
 {
   mcor_set_cap_extent(context, axis, upper, nodes);
   MCOR_TRY(mcor_find_cap_bricks(context, context->run.iso.value, nodes));
   MCOR_TRY(mcor_take_cap_masks(context, nodes));
-  if (!opposite)
-  {
-    MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false));
-  }
-  /* Copies the results of the period's opposite side: a period apart, sums have the same bits. */
-  for (int64_t to = MCOR_SIDE_NODES; opposite && to < nodes->node_count; ++to)
-  {
-    mcor_cap_brick* brick = &nodes->bricks.of[to / MCOR_SIDE_NODES];
-    cl_int at[3] = { brick->at[0], brick->at[1], brick->at[2] };
-    at[axis] = opposite->plane / MCOR_BRICK;
-    const int32_t number = mcor_cap_brick_at(opposite, at);
-    const mcor_cap_brick* from = &opposite->bricks.of[number];
-    const int bit = mcor_side_bit(nodes, nodes->plane, to),
-              from_bit = mcor_side_bit(opposite, opposite->plane, to);
-    if (!brick->is_known)
-    {
-      brick->above |= (from->above >> from_bit & 1) << bit;
-      brick->valid |= (from->valid >> from_bit & 1) << bit;
-    }
-    nodes->margin[to] = opposite->margin[(int64_t)number * MCOR_SIDE_NODES + to % MCOR_SIDE_NODES];
-  }
+  MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false));
   return mcor_ask_cap_nodes(context, nodes, true);
 }

@@ -217,7 +217,7 @@ public:
   /**
    * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1,
    * unit L; sides may be infinite. The result is exactly that part of the whole surface, so boxes
-   * side by side make up the whole. The panel has the box's lower corner and its lengths.
+   * side by side make up the whole. The panel shows the box's lower corner and its lengths.
    */
   vtkSPHFlagMacro(UseBox, 0);
   vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
@@ -236,7 +236,7 @@ public:
   /**
    * Close the surface at the sides of the period and of the box's cells, where values are above the
    * iso value: with flat triangles, in two dimensions with straight lines. Trimming and walls may
-   * leave the surface open. Off by default. An error with PAIRS or Filled.
+   * leave the surface open. Off by default. Cannot be combined with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping, 0);
 
@@ -244,8 +244,8 @@ public:
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
    * fluid, with triangles that share the points of the lines. The other values divide the region
    * into bands. The cell array "BandValue" has a line's iso value, or the iso value at which a
-   * triangle's band begins; the point array "IsoValue" has the same values. Off by default. An
-   * error in 3-D.
+   * triangle's band begins; the point array "IsoValue" has the same values. Off by default.
+   * An update fails if the particles do not lie in a plane.
    */
   vtkSPHFlagMacro(Filled, 0);
 
@@ -272,18 +272,18 @@ public:
   void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
   ///@}
 
-  /** Quick look: linear interpolation, no correction, normals of triangles. Off by default. */
+  /** For a quick look: vertices are interpolated linearly and not corrected, and normals come from the triangles. Off by default. */
   vtkSPHFlagMacro(Preview, 0);
 
   /**
    * A compact contour: vertices that belong to one node of the virtual grid become one vertex,
    * which is corrected along the gradient. The contour has a quarter fewer triangles, hardly any
    * slivers, and the same pieces. Vertices at borders, caps and periodic sides stay. Off by
-   * default. An error with Filled.
+   * default. Cannot be combined with Filled.
    */
   vtkSPHFlagMacro(Compact, 0);
 
-  /** For pictures: Compact, and a Widening of 2 unless another one is set. Off by default. */
+  /** For smooth pictures: turns Compact on, and uses a Widening of 2 unless Widening is set. Off by default. */
   vtkSPHFlagMacro(Smooth, 0);
 
   /**
@@ -297,10 +297,9 @@ public:
   /**
    * Writes the particles that a run with this filter's settings would take, with the arrays
    * Widening (the factors), WidenedSmoothingLength (the products) and, if volumes are computed,
-   * WideningVolume. Returns false, and leaves `output` as it is, if that fails (after an error), if
-   * there is no fluid (after a warning), if there are no particles, or if the run was cancelled. If
-   * several processes share the filter's runs, all must call this together, and each gets its own
-   * particles.
+   * WideningVolume. Returns false, and leaves `output` as it is, after an error, after a warning
+   * that there is no fluid, if there are no particles, or if the run was cancelled. If several
+   * processes share the filter's runs, all must call this together; each gets its own particles.
    */
   bool Widen(vtkPointSet* particles, vtkPolyData* output);
 
@@ -333,7 +332,7 @@ public:
    * surface continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: the
    * surface ends in front of the wall, where the weight of the fluid alone is VertexThreshold.
    * SOLIDS_WALL: the surface ends where the solids' share of the weight sum exceeds WallShare.
-   * SOLIDS_AUTO by default.
+   * SOLIDS_AUTO (the default): see SolidsType.
    */
   void SetSolids(int solids);
   vtkGetMacro(Solids, int);
@@ -467,7 +466,7 @@ private:
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input, mcor_options options,
     mcor_surface& surface, vtkPolyData* output);
-  /** largestFloat: the largest coordinate of all ranks' points, see vtkMarchingCorrectorsOutput. */
+  /** largestFloat: the greatest of all ranks' vtkMarchingCorrectorsOutput::FindLargestFloat(). */
   void WarnOf(const vtkSPHParticles& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
   bool Take(vtkRun& run, vtkSPHParticles& input);

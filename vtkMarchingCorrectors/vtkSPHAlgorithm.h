@@ -4,8 +4,8 @@
  * @class   vtkSPHAlgorithm
  * @brief   superclass of the filters that evaluate the field of SPH particles
  *
- * These filters share how the particles are described, the OpenCL device that does the work, and
- * what is reported of a run. All lengths are in the unit of the point coordinates (L below).
+ * All these filters describe particles, choose the OpenCL device and report on a run in the same
+ * way. All lengths are in the unit of the point coordinates (L below).
  *
  * Smoothing lengths, volumes, masses and densities are point arrays. Unless they are named or given
  * as a constant, or DetectArrays is off, they are found by their usual names, such as hsml or rho,
@@ -13,9 +13,9 @@
  * an empty one. The volume of a particle is taken from the volume array; else it is mass / density;
  * else it is computed from the particles' distances and masses, see mcor_input in mcor.h.
  *
- * The blocks of composite data form one set of particles, with the arrays that all of them have; or
- * each is processed by itself, see SetBlocks(). If a block by itself fails, its place in the output
- * stays empty, and the error names it.
+ * The blocks of composite data form one set of particles, with the arrays that all blocks have; or
+ * each block is processed by itself, see SetBlocks(). If one then fails, its place in the output
+ * stays empty, and the error names the block.
  *
  * @sa
  * vtkMarchingCorrectors
@@ -124,7 +124,7 @@ public:
 
   ///@{
   /**
-   * Estimate the smoothing lengths, whatever array or constant there is. Off by default.
+   * Estimate the smoothing lengths, even if there is an array or a constant. Off by default.
    * ESTIMATE_SPACING (the default): one for all particles, 1.3 times their median spacing.
    * ESTIMATE_NEIGHBORS: for each particle the h with h^d sum W(x - x_j, h) = NeighborRatio^d, d
    * being the dimension, as Phantom, GADGET and SWIFT define it; NeighborRatio is 1.3 by default.
@@ -162,8 +162,8 @@ public:
   vtkSPHChoiceMacro(ParticleVolume, double);
 
   /**
-   * Compute volumes, whatever arrays there are. Drops, jets and sheets then keep their surface. Off
-   * by default.
+   * Compute volumes, even if there are arrays for them. Drops, jets and sheets then keep their
+   * surface. Off by default.
    */
   vtkSPHChoiceFlagMacro(ComputeVolumes);
 
@@ -180,8 +180,8 @@ public:
   /**
    * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds"
    * of six bounds, "BoxSize" of one or three lengths, or "box" and "boundaryType", see
-   * mcor_find_period in mcor.h. With several processes, any of them may have the array. An error if
-   * there is none, or if processes have different ones. Off by default.
+   * mcor_find_period in mcor.h. With several processes, any of them may have the array. An update
+   * fails if no period is found, or if processes have different periods. Off by default.
    */
   vtkSPHChoiceFlagMacro(DetectPeriod);
 
@@ -217,7 +217,7 @@ public:
 
   ///@{
   /**
-   * The kernel by its short name: "cubic", ...; null: there is no kernel of this number.
+   * The kernel's short name, such as "cubic"; null: there is no kernel of this number.
    * SetKernelByName() returns false, and changes nothing, if there is no such kernel.
    */
   bool SetKernelByName(const char* name);
@@ -256,7 +256,7 @@ public:
   ///@{
   /**
    * The point array and the value (0 by default) that mark fluid particles, which alone make the
-   * field; all others are solid. Empty (the default): all particles are fluid.
+   * field; all other particles are solid. Empty (the default): all particles are fluid.
    */
   vtkSPHChoiceTextMacro(FluidArrayName);
   vtkSPHChoiceMacro(FluidValue, double);
@@ -306,10 +306,10 @@ public:
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the box of the fluid. Leaves out a few particles (at each side at most 0.1 %, or 8) if they
-   * are farther from the box of the others than this box is long. Returns false, and writes nothing,
-   * if no particle is fluid. densest: see GetNextDensest(); may be null. Collective if processes
-   * share a run.
+   * Finds the fluid's box. Leaves out a few particles (at each side at most 8, or 0.1 % if this
+   * is more) if they are farther from the box of the other particles than that box is long. Returns
+   * false, and writes nothing, if no particle is fluid. densest: see GetNextDensest(); may be null.
+   * Collective if processes share a run.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest = nullptr);
 
@@ -373,8 +373,8 @@ public:
    * One array for each number of the last update: "FlatLoops" is flat_loops of mcor_statistics in
    * mcor.h, and so on; "Seconds" has a named component for each phase, for building the OpenCL
    * program, and in total. GetStatistics() returns text, a line "Name: values" for each. If blocks
-   * are APART, costs are sums over blocks, and all else is of the last block. Empty if nothing ran.
-   * The next update makes a new object and leaves this one as it is.
+   * are APART, costs are summed over blocks (of peaks, the greatest is kept), and all else is of
+   * the last block. Empty if nothing ran. The next update makes a new object; this one stays.
    */
   vtkFieldData* GetRunStatistics();
   const char* GetStatistics();
@@ -406,8 +406,8 @@ public:
 
   /**
    * The colour ranges of the output's point arrays: for each array a line with the lowest value,
-   * the highest value and the name. A range holds the values on 98 % of the area, or at 98 % of the
-   * points that are no walls. Empty for composite data, and if processes share a run.
+   * the highest value and the name. A range holds the values on 98 % of the area or length, or at
+   * 98 % of the points that are no walls. Empty for composite data, and if processes share a run.
    */
   const char* GetColorRanges();
 
@@ -468,8 +468,8 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Warns, naming the block; once in a run for each kind, however many blocks there are. Kinds are
-   * the core's (mcor_warning) and these:
+   * Reports a warning, naming the block, once in a run for each kind, however many blocks there
+   * are. Kinds are those of mcor_warning, and the ones below.
    */
   void WarnOnce(int kind, const std::string& message);
   enum
@@ -514,7 +514,7 @@ private:
   vtkSPHAlgorithm(const vtkSPHAlgorithm&) = delete;
   void operator=(const vtkSPHAlgorithm&) = delete;
 
-  /** Makes a data object of this class; `like` may have the same class. */
+  /** Makes a data object of this class, from `like` if `like` has this class. */
   static vtkSmartPointer<vtkDataObject> NewOutput(
     const std::string& className, vtkDataObject* like);
   /** Finds the six bounds of the fluid, or three points on densest lines; 0: they are unknown. */

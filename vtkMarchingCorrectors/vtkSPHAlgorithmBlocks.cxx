@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Processes blocks of composite data, and detects the fluid among particles.
+// Finds the particles in a filter's input, processes blocks, and finds values for panels.
 #include "vtkSPHAlgorithm.h"
 
 #include "vtkDataObjectTree.h"
@@ -38,7 +38,7 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
   return range[0] == range[1];
 }
 
-// A block that fails leaves its place empty, and does not touch the others. An observer of the
+// A block that fails leaves its place empty, and does not touch other blocks. An observer of the
 // progress may take blocks out of the input, or change blocks that come later, so the tree and the
 // later blocks are copied first.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
@@ -53,8 +53,8 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   const std::vector<std::string> names = vtkSPHNameBlocks(blocks);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(blocks->NewTreeIterator());
-  // The blocks, in order. All but the first are shallow copies, so that they do not take over the
-  // data that the filter has kept for the first block.
+  // The blocks, in order. Later blocks are shallow copies. The first block is not copied, so that
+  // the data that the filter has kept for this block can be used again.
   std::vector<vtkSmartPointer<vtkDataObject>> taken;
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {

@@ -20,8 +20,8 @@
  * counts in the piece that encloses an image of the particle.
  *
  * If the controller has several processes, each gets its part of the surface with ComponentId, and
- * the first one gets the table, the same as from one process; the others get one without rows. The
- * first process collects all points, triangles and particles.
+ * the first one gets the table, the same as from one process; the tables of other processes have no
+ * rows. The first process collects all points, triangles and particles.
  *
  * @sa
  * vtkMarchingCorrectors vtkConnectivityFilter vtkMassProperties

@@ -16,7 +16,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Returns gradients of vectors with 2 components as gradients of vectors with 3. The gradient of the third is 0. */
+/** Returns gradients of vectors with 2 components as gradients of vectors with 3. The component across the plane gets gradients of 0. */
 std::vector<double> InSpace(const mcor_derivatives& derivatives)
 {
   const double* extent = derivatives.statistics.fluid_extent;

@@ -20,7 +20,7 @@
  *
  *     time         of the particles
  *     section      the name
- *     area         of the part of the section in fluid, A
+ *     area         of the part of the section in fluid
  *     volume_flux  the integral of v . n over this part, n being the normal
  *     mass_flux    the integral of rho v . n over this part; NaN without densities
  *     velocity     volume_flux / area; NaN where the area is 0

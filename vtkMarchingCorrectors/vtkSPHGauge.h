@@ -59,7 +59,7 @@ public:
   ///@}
 
   ///@{
-  /** The line that is used if there are no others. (0, 0, 0) and (0, 0, 1) by default. */
+  /** The ends of the line that is used if there are no other lines. (0, 0, 0) and (0, 0, 1) by default. */
   vtkSPHVector3Macro(Point1, double, 0.0, 0.0, 0.0);
   vtkSPHVector3Macro(Point2, double, 0.0, 0.0, 1.0);
   ///@}

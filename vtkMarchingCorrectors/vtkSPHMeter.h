@@ -11,7 +11,7 @@
  *
  * If the controller has several processes, they share the work: each has some of the particles, and
  * the places of all processes are measured. The first process gets the table, the same to the last
- * bit as from one process; the others get one without rows.
+ * bit as from one process; the tables of other processes have no rows.
  *
  * @sa
  * vtkSPHGauge vtkSPHFlux

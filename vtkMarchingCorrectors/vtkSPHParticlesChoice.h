@@ -30,7 +30,7 @@ struct vtkSPHOnly
 
 /**
  * Computes sums over neighbours if processes share the particles. Writes a value for each particle
- * of this process, as vtkSPHSumNeighbors() does, and returns why that failed, else an empty text.
+ * of this process, as vtkSPHSumNeighbors() does. Returns why the sums failed, else an empty text.
  * The function itself is empty if there is one process.
  */
 using vtkSPHSumShared = std::function<std::string(vtkPointSet* points, const mcor_input& mine,

@@ -20,9 +20,9 @@
  *
  * Existing arrays of these names are replaced. The active scalars become the velocities, else the
  * first vector or scalar of the particles that varies. Arrays of other types, such as identifiers,
- * are left out; one that is NaN or infinite at a fluid particle is left out with a warning. Only
- * fluid particles count. Points that vtkGhostType marks as duplicates have values, too. The value
- * at a point depends neither on the other points nor on the order of points or particles.
+ * are left out; a float or double array with NaN or infinity at a fluid particle is left out with a
+ * warning. Only fluid particles count. Points that vtkGhostType marks as duplicates have values,
+ * too. The value at a point depends on neither other points nor the order of points or particles.
  *
  * Composite data at port 0 give composite data. Particles in several blocks are taken together.
  *

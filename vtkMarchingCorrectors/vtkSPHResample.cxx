@@ -34,7 +34,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
  */
 constexpr double Margin = 0.03;
 
-/** How many points a volume has if its dimensions are not set. */
+/** About how many points a volume has if its dimensions are not set. */
 constexpr double UsualPoints = 1e6;
 
 /** The range of a plane inside a box, along the plane's axes u and v; empty if the plane misses the box. */
@@ -132,7 +132,7 @@ void MakeSlice(const double box[6], const double origin[3], const double normal[
   slice->SetPolys(quads);
 }
 
-/** Makes a line of `resolution` points, at least 2; arc_length is the distance from the first. */
+/** Makes a line of `resolution` points, at least 2; arc_length is the distance from the first point. */
 void MakeLine(const double from[3], const double to[3], int resolution, vtkPolyData* line)
 {
   const vtkIdType count = std::max(resolution, 2);
@@ -172,8 +172,8 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-// Origin and spacing depend on the particles, and come with the data. Dimensions that are not set
-// follow the shape of the present fluid: cells are about cubes, in one layer if the fluid is flat.
+// Origin and spacing come with the data. Dimensions that are not set follow the shape of Bounds, or
+// of the present fluid's box: cells are about cubes, in one layer if the box is flat.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

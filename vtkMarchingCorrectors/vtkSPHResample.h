@@ -13,7 +13,7 @@
  * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the
  * middle along the longest side of the fluid's box, and the volume is this box, all with a margin
  * of 3 % of this side. A slice of particles in a plane always lies in their plane. Where there is
- * no fluid arrays are NaN, see SetNaNOutside(), and a slice has no quads, see SetOnlyFluid().
+ * no fluid, arrays are NaN, see SetNaNOutside(), and a slice has no quads, see SetOnlyFluid().
  *
  * Blocks of composite data always form one set of particles. If the controller has several
  * processes, each has a part of the volume; a slice or line is on the first one.
@@ -70,8 +70,8 @@ public:
   vtkSPHClampMacro(Resolution, int, 500, 2, 100000);
 
   /**
-   * How many points a volume has along x, y and z. 0, the default: the shape of the volume decides;
-   * about a million in all. If the particles lie in a plane, one point along the constant axis.
+   * How many points a volume has along x, y and z. 0 (the default): about a million points in all,
+   * in cells that are about cubes. If particles lie in a plane, one point along the constant axis.
    */
   vtkSPHVector3Macro(Dimensions, int, 0, 0, 0);
 

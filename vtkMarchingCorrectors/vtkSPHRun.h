@@ -129,7 +129,7 @@ public:
   /** Returns true if `problem` is empty on all processes. Else reports the error and returns false. */
   virtual bool Agree(const std::string& problem);
 
-  /** Takes this process's particles, which may be null. */
+  /** Takes this process's particles. If they are null, a run of one process returns false. */
   virtual bool Begin(vtkPointSet* particles);
   /** Returns the filter's description of the particles, completed as vtkSPHChoose() does. */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
@@ -198,8 +198,7 @@ public:
 
 protected:
   void Fail(const std::string& message);
-  /** Finds the period if the filter wants that. Returns false, after an error, if there is none, or if
-   * it is not usable. */
+  /** Finds the period if DetectPeriod is on. Returns false, after an error, if no usable period is found. */
   bool SetPeriod();
   /** Returns the bounds of the period that field data tell; empty if they tell none. */
   virtual std::vector<double> FindPeriod(std::string& problem);

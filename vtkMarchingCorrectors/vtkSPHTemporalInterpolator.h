@@ -90,18 +90,15 @@ public:
 
   ///@{
   /**
-   * The particles' motion between the last two steps, divided by the motion that their velocities
-   * give, if a warning tells of it; else 0. A further update between the same two steps sets it to
-   * 0.
+   * If the last update between two steps found that velocities do not fit the motion: the motion
+   * of the particles, divided by the motion that their velocities give. Else 0, also after another
+   * update between the same two steps.
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);
   ///@}
 
-  /**
-   * Why the last update failed: a sentence, or one for each block that failed, one a line. They are
-   * also reported as VTK errors. Empty: the update did not fail.
-   */
+  /** Why the last update failed: the sentences of its VTK errors, one a line; empty: it did not fail. */
   vtkSPHToldMacro(ErrorMessage);
 
 protected:

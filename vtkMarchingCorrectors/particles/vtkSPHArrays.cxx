@@ -91,8 +91,7 @@ void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
   }
 }
 
-// The field array "IsoValues" lists the iso values. Its component name is the name of the point
-// array.
+// The component of the field array "IsoValues" has the name of the point array of iso values.
 vtkDataArray* vtkSPHFindIsoValues(vtkDataSet* surface)
 {
   vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");

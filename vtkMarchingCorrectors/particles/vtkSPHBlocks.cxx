@@ -87,7 +87,7 @@ struct Leaf
     return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
   }
 
-  /** The text that, as name of the fluid array, chooses this block as the fluid. */
+  /** Returns the name of the fluid array that chooses this block as the fluid. */
   std::string FluidArray() const { return "Block: " + this->Name; }
 };
 

@@ -40,9 +40,9 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 /** Whether an array of this name may tell a period. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 
-/** Calls mcor_tells_apart with the name of a table's column. */
+/** Whether a table's column of this name tells particles or their kinds apart, see mcor_tells_apart. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsApart(const char* name);
-/** Calls mcor_name_priority, for positions, with the name of a table's column. */
+/** Returns how usual a name is for a column of positions, see mcor_name_priority. */
 VTKMARCHINGCORRECTORS_EXPORT int vtkSPHPositionPriority(const char* name);
 
 /** Returns a period as six bounds. Three lengths are placed around the particles' extent. */

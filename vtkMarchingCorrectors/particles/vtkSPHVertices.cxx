@@ -26,7 +26,7 @@ bool IsVertex(int type)
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX;
 }
 
-/** The list of cells with a data set's vertices. Tuple i of the cell data belongs to cell i of the list. */
+/** A data set's list with its vertex cells: the verts of poly data, or all cells of a grid. Tuple i of the cell data belongs to cell i. */
 struct Cells
 {
   vtkCellArray* List = nullptr;

@@ -171,8 +171,8 @@ std::vector<vtkSPHPieces::Edge> vtkSPHPieces::ListOpenEdges(const std::vector<vt
 
 // Joins pieces across the period's sides. An open edge in a side is where the surface goes on
 // beyond the side, or where a cap was trimmed. Points of open edges on opposite sides match if
-// their other two coordinates are equal. Two matching points get one number in `twins`. bounds: of
-// the points that triangles use.
+// their other two coordinates are equal. Two matching points get one number in `twins`. bounds: the
+// bounds of the points that triangles use.
 void vtkSPHPieces::JoinSides(const double bounds[6], std::vector<vtkIdType>& twins)
 {
   std::vector<Edge> open;
@@ -218,7 +218,7 @@ void vtkSPHPieces::JoinSides(const double bounds[6], std::vector<vtkIdType>& twi
   }
 }
 
-// Returns in which period a coordinate lies, counted from the given one; 0 if there is no period.
+// Returns how many periods a coordinate lies above the given period; 0 if there is no period.
 double vtkSPHPieces::PeriodOf(double at, int axis, double tolerance) const
 {
   const double length = this->Length[axis];
@@ -327,7 +327,7 @@ void vtkSPHPieces::Measure()
 }
 
 // Moves each piece so that its centre is within the period, wherever the lattice's sides are. A
-// centre on a side, up to rounding, belongs to the lower side.
+// centre on the upper side, up to rounding, moves to the lower side.
 void vtkSPHPieces::MoveHome()
 {
   std::vector<Shift> moves(this->Pieces.size());

@@ -33,12 +33,12 @@ struct vtkSPHPiece
 /**
  * Finds the pieces of a surface. Triangles that share points belong to one piece. `period` has a
  * low and a high bound for each axis; 0 0: no period along this axis. A surface that goes on beyond
- * the period ends at both sides, which are planes of the lattice, up to a cube away from the
- * bounds. Triangles at opposite sides belong to one piece, too, if they have points whose two other
- * coordinates are the same, to the last bit. A piece with a cap at a side ends at this side. Pieces
- * are sorted by area, the largest first. Each piece is placed so that its centre is within the
- * period. Surfaces of several iso values are nested. Each piece encloses particles, and cavities of
- * its own iso value, as if there were no other iso values.
+ * the period is cut at planes of the lattice, up to a cube away from the bounds. Triangles at
+ * opposite cuts belong to one piece, too, if they have points whose coordinates along the cut are
+ * the same, to the last bit. A piece with a cap at a cut ends at this cut. Pieces are sorted by
+ * area, the largest first. Each piece is placed so that its centre is within the period. Surfaces
+ * of several iso values are nested. Each piece encloses particles, and cavities of its own iso
+ * value, as if there were no other iso values.
  */
 class vtkSPHPieces
 {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Finds which piece encloses a point: a ray along x leaves an enclosing piece once more than it
-// enters it. Triangles are listed in columns along x, and a ray tests the triangles of its column.
+// enters the piece (a cavity: once less). Triangles are listed in columns along x, and a ray tests
+// the triangles of its column.
 #include "vtkSPHPieces.h"
 
 #include "vtkSMPTools.h"
@@ -19,7 +20,7 @@ using Triple = std::array<double, 3>;
 using Face = vtkSPHPieces::Face;
 
 /**
- * Whether the edge between two corners passes y, and the point (y, z) lies below the edge. The
+ * Whether the edge from `a` to `b` extends over y, and the point (y, z) lies below the edge. The
  * result is the same for both triangles at an edge, so no ray slips between them.
  */
 bool IsBelow(const double* a, const double* b, double y, double z)
@@ -248,8 +249,9 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   return found;
 }
 
-// Rays go both ways along each axis. Each ray ends at the first face of a piece without a volume:
-// there the ray leaves or enters the piece. The majority decides, because an open piece has holes.
+// Rays go both ways along each axis. Each ray ends at the first face of a piece without a volume,
+// where it leaves or enters the piece. If more rays leave than enter, the nearest piece that a ray
+// leaves is around the point. One ray is not enough, because an open piece has holes.
 std::vector<vtkIdType> vtkSPHPieces::FindAround(
   const std::vector<Triple>& points, double isoValue) const
 {

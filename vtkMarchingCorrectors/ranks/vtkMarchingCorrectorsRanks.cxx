@@ -41,9 +41,9 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 }
 
 /**
- * Merges statistics: sums of counts, the longest seconds, and means over all points (each point is
- * counted by one rank only). Bricks, nodes and evaluations count twice where two ranks' boxes meet
- * and both ranks evaluate them.
+ * Merges the ranks' statistics. Counts are summed, of times and peaks the greatest is kept, and
+ * means are over all points (each point is counted by one rank only). Bricks, nodes and evaluations
+ * count twice where two ranks' boxes meet and both ranks evaluate them.
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
@@ -116,10 +116,9 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 }
 
 /**
- * Numbers the distinct keys of all ranks in order, and returns the numbers of this rank's keys,
- * which must ascend. areCells: each key takes as many successive numbers as its last part says, one
- * for each triangle of the cell. total: how many numbers there are. Each rank sorts a range of the
- * keys.
+ * Numbers the distinct keys of all ranks in order, and returns the numbers of this rank's keys.
+ * keys: must ascend. areCells: each key takes as many successive numbers as its last part says, one
+ * for each triangle of the cell. total: the count of numbers. Each rank sorts a range of the keys.
  */
 vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   vtkSPHRanks& ranks, const Keys& keys, bool areCells, const char* name, vtkIdType& total)

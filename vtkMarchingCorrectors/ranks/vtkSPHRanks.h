@@ -103,10 +103,7 @@ public:
   /** Call this where other ranks call Reduce() or Gather(). If `stops` is set, those calls do nothing. Returns true if no rank stops. */
   bool Stop(bool stops) { return vtkSPHAwaitRanks(this->Controller, !stops); }
 
-  /**
-   * Merges ranges, each a least and a greatest value; an empty range goes from infinity to
-   * -infinity.
-   */
+  /** Merges each range, a least and a greatest value, over all ranks. An empty range goes from infinity to -infinity. */
   void ReduceRanges(double* ranges, int count)
   {
     // Negated greatest values are least values, so that one Reduce() is enough.

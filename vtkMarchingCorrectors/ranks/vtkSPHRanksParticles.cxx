@@ -319,8 +319,8 @@ std::vector<Form> AgreeOnForms(vtkSPHRanks& ranks, vtkPolyData* particles)
 }
 
 /**
- * Copies the points `ids`, with arrays of these forms. If all of an array is wanted in its own
- * form, takes the array itself. An array that `from` lacks gets no values.
+ * Copies the points `ids`, with arrays of these forms. An array that is wanted whole and in its own
+ * form is not copied, but shared. An array that `from` lacks gets no values.
  */
 vtkSmartPointer<vtkPolyData> TakePoints(
   vtkPolyData* from, const std::vector<Form>& forms, vtkIdList* ids)
@@ -408,7 +408,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   return particles;
 }
 
-// Arrays stay in their order, and computed arrays come after them, so that all are found again.
+// Arrays stay in their order, with computed arrays last, so that other ranks find the same arrays.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
 {
   vtkSPHRanksArrays wanted;

@@ -31,8 +31,8 @@ vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, v
 
 /**
  * Sends to each rank the tuples listed for it. The arrays must have the same types on all ranks.
- * Returns arrays of the tuples that came, in the order of ranks; from: how many came from each.
- * Collective.
+ * Returns arrays of the tuples that came, in the order of ranks. from: how many tuples came from
+ * each rank. Collective.
  */
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
@@ -49,7 +49,7 @@ vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays
 
 /**
  * Gathers all ranks' tuples on the first rank; the other ranks get none. numbers: the place of each
- * of this rank's tuples in the result. If it is null, tuples come in the order of ranks. Collective.
+ * of this rank's tuples in the result; null: tuples come in the order of ranks. Collective.
  */
 vtkSPHRanksArrays vtkSPHGatherTuples(
   vtkSPHRanks& ranks, vtkSPHRanksArrays arrays, vtkDataArray* numbers);

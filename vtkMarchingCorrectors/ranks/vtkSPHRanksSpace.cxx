@@ -23,7 +23,7 @@ constexpr std::int64_t SamplesPerRank = 1024;
 /** The coarse grid has at most this number of cells. */
 constexpr double CellLimit = 1 << 18;
 
-/** Edge of a cell in median smoothing lengths, unless that makes too many cells. */
+/** Least edge of a cell of the coarse grid, in median smoothing lengths. */
 constexpr double CellLengths = 2.0;
 
 /** The cost of a cube with surface, in costs of a particle. */
@@ -60,8 +60,8 @@ vtkSPHRanksSpace::vtkSPHRanksSpace(const mcor_options& options, const mcor_globa
     {
       low = std::min(std::max(low, options.box[2 * a]), high);
       high = std::max(std::min(high, options.box[2 * a + 1]), low);
-      // A flat box in the particles' plane must hold them, although its high side does not belong
-      // to it.
+      // A box does not hold places on its high side, so the high side of a flat box in the
+      // particles' plane is moved up: the box then holds the particles.
       high = plane.axis == a + 1 && low == plane.at ? std::max(high, std::nextafter(low, Infinity))
                                                     : high;
     }
@@ -194,7 +194,7 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   return radii;
 }
 
-// A sample stands for `step` units of work. If there is little work, `step` is 1.
+// The work of samples is counted in units of `step`. If there is little work, `step` is 1.
 void vtkSPHRanksSpace::Divide(
   vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts)
 {
@@ -320,8 +320,8 @@ bool vtkSPHRanksSpace::Reaches(int rank, int count, const double at[3], double r
   {
     const double low = this->Boxes[Index(rank)][Index(2 * a)],
                  high = this->Boxes[Index(rank + count - 1)][Index(2 * a + 1)];
-    // The cube reaches the box if the place moves by `first` to `last`. Along a periodic axis it can
-    // move by whole periods, else not at all.
+    // The cube reaches the box if the place moves by `first` to `last`. Along a periodic axis the
+    // place may move by whole periods, else it may not move.
     double first = low - radius - at[a], last = high + radius - at[a];
     first = this->IsPeriodic(a) ? std::ceil(first / this->Length[a]) : first;
     last = this->IsPeriodic(a) ? std::floor(last / this->Length[a]) : last;
@@ -357,7 +357,7 @@ namespace
 {
 using Range = std::array<double, 2>; // least and greatest
 
-/** A grid of cells around all fluid, with what all ranks have in each cell. */
+/** A grid of cells around the fluid of all ranks. */
 struct CoarseGrid
 {
   explicit CoarseGrid(const mcor_measure& m)
@@ -392,8 +392,8 @@ struct CoarseGrid
   }
 
   /**
-   * Estimates how many surfaces, each as large as a side of the cell, pass through the cell, from
-   * this cell and the six around it.
+   * Estimates from a cell and the six cells around it how many surfaces pass through the cell, each
+   * as large as a side of the cell.
    */
   int CountSurfaces(const mcor_options& options, std::size_t cell) const
   {

@@ -28,15 +28,15 @@ struct vtkSPHRanksPlace
 };
 
 /**
- * The space of a run, in its box and periods. Share() divides it among ranks by a k-d tree
- * over samples of the work, with cuts between the lattice's bricks. All ranks have the same
- * samples, and so the same tree.
+ * The space of a run: the part of one period that lies in the run's box. Share() divides the space
+ * among ranks by a k-d tree over samples of the work, with cuts between the lattice's bricks. All
+ * ranks have the same samples, and so the same tree.
  */
 class vtkSPHRanksSpace
 {
 public:
   vtkSPHRanksSpace() = default;
-  /** Keeps pointers to both arguments, because Share() reads them again. globals: of all ranks' particles. */
+  /** Keeps pointers to both arguments, for Share() and Divide(). globals: of all ranks' particles. */
   vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals);
 
   double First[3] = { 0.0, 0.0, 0.0 }; ///< where the first period begins
@@ -90,11 +90,11 @@ private:
   std::vector<double> FindRadii(
     vtkSPHRanks& ranks, const mcor_input& input, const std::vector<vtkSPHRanksPlace>& places) const;
   /**
-   * Whether a cube around a place, or around an image of the place, reaches the boxes of the group
-   * of `count` ranks from `rank` on, which the k-d tree divides.
+   * Whether a cube around a place, or around an image of the place, reaches the box that the k-d
+   * tree divides among the `count` ranks from `rank` on.
    */
   bool Reaches(int rank, int count, const double at[3], double radius) const;
-  /** Adds to `found` the ranks of the group whose boxes the cube reaches. */
+  /** Adds to `found` those of the `count` ranks from `rank` on whose boxes the cube reaches. */
   void AddReached(
     int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 

@@ -28,7 +28,7 @@ constexpr double MarginCubes = 4.0;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-/** The ranks' callbacks for the core. A rank that fails does not leave the others waiting. */
+/** The ranks' callbacks for the core. A rank that fails does not leave other ranks waiting. */
 class Callbacks
 {
 public:

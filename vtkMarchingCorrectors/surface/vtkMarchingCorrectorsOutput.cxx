@@ -303,7 +303,7 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
 
 namespace
 {
-/// Adds a parameter: its number, or the word that has this number.
+/// Adds a parameter: its number or, if `isWord`, the word with this index in `words`.
 template <typename T>
 void AddOption(vtkFieldData* data, const std::string& name, bool isWord, const char* words, T value)
 {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: makes a vtkPolyData, statistics included, of the core's surface. */
+/** Private to the module: makes a vtkPolyData, and the statistics of the run, of the core's surface. */
 #ifndef vtkMarchingCorrectorsOutput_h
 #define vtkMarchingCorrectorsOutput_h
 
@@ -46,7 +46,7 @@ public:
   /**
    * Writes the mesh, its arrays and the iso values to `output`. precision: the points' precision, as
    * in vtkAlgorithm. merge: merges ranges over all processes, see vtkRun::MergeRanges(); so all
-   * processes that share a run must call this.
+   * processes that share a run must call BuildMesh().
    */
   using Merge = std::function<void(double* ranges, int count)>;
   void BuildMesh(vtkPolyData* output, int precision, const Merge& merge);

@@ -388,7 +388,7 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   {
     return; // one step has no particles, so nothing can be interpolated
   }
-  // Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
+  // Positions are computed in double, from the nearer step, so that particles at rest do not move.
   const double nearTime = times[early ? 0 : 1], farTime = times[early ? 1 : 0];
   const double toFar = this->Choice.TimeScale * (farTime - nearTime); // negative in the later half
   const double toTime = this->Choice.TimeScale * (time - nearTime);

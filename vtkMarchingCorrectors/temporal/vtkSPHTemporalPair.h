@@ -14,7 +14,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-/** The user's choices, and the times of the two steps, the second one later. */
+/** The user's choices, and the ascending times of the two steps. */
 struct vtkSPHTemporalChoice
 {
   std::string IdArrayName;

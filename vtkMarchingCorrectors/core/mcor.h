@@ -88,9 +88,6 @@ extern "C"
    * slots; NULL if there is no such code. */
   const char* mcor_says_name(mcor_says code);
   const char* mcor_says_text(mcor_says code);
-  /* Returns the code of a sentence of this library, in whichever interface's words;
-   * MCOR_SAYS_NOTHING if this library has no such sentence. */
-  mcor_says mcor_code_of(const char* sentence);
 
   /* Element type of an array. */
   typedef enum mcor_type
@@ -630,11 +627,6 @@ extern "C"
   /* Whether a table's column of this name holds whole numbers that tell particles, or their kinds,
    * apart: the name ends in "id", "type", "index", ... */
   int mcor_tells_apart(const char* name);
-
-  /* Whether an array of this name, with whole numbers from low to high over all particles, clearly
-   * tells which particles are fluid, because it holds 0 and 1, or the codes of DualSPHysics. *fluid
-   * becomes the value of fluid particles. */
-  int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
 
   /* Returns an array's priority number. If the user has chosen no array, show the one with the
    * lowest number. Velocities come first, then other vectors, scalars, particle properties, and the

@@ -141,39 +141,6 @@ char* mcor_fill_slots(const char* text, mcor_word word, void* user)
   return out;
 }
 
-/* Returns how many characters of the text lie outside of formats and slots. Returns 0 unless the
- * sentence has all pieces of the text between formats and slots, in the same order. */
-static size_t mcor_match(const char* text, const char* sentence)
-{
-  size_t all = 0;
-  while (*text && sentence)
-  {
-    char piece[400];
-    const size_t length = strcspn(text, "%{");
-    snprintf(piece, sizeof piece, "%.*s", (int)length, text);
-    sentence = strstr(sentence, piece);
-    sentence = sentence ? sentence + length : NULL;
-    all += length;
-    text += length;
-    text += *text == '%' ? 1 + strspn(text + 1, "-+.0123456789lz") + 1 : strcspn(text, "}") + 1;
-    text -= text[-1] == 0;
-  }
-  return sentence ? all : 0;
-}
-
-mcor_says mcor_code_of(const char* sentence)
-{
-  size_t most = 0;
-  mcor_says found = MCOR_SAYS_NOTHING;
-  for (int code = 1; code < MCOR_SAYS_COUNT; ++code)
-  {
-    const size_t length = mcor_match(mcor_sentences[code].text, sentence);
-    found = length > most ? (mcor_says)code : found;
-    most = length > most ? length : most;
-  }
-  return found;
-}
-
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 0)))
 #endif

@@ -139,11 +139,6 @@ std::string vtkSPHSay(mcor_says, const char* format, ...)
   return vtkSPHTakeText(mcor_fill_slots(text.c_str(), vtkSPHWord, nullptr));
 }
 
-mcor_says vtkSPHCodeOf(const std::string& sentence)
-{
-  return mcor_code_of(sentence.c_str());
-}
-
 std::string vtkSPHTakeText(mcor_message message)
 {
   const std::string taken = vtkSPHTakeText(mcor_fill_slots(message.text, vtkSPHWord, nullptr));

@@ -19,7 +19,4 @@ VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHSay(mcor_says code, const char* f
 #endif
   ;
 
-/** Returns the code of a sentence whose slots are filled. */
-VTKMARCHINGCORRECTORS_EXPORT mcor_says vtkSPHCodeOf(const std::string& sentence);
-
 #endif

@@ -436,8 +436,9 @@ bool ParticleTimes::ForEach(const std::vector<std::string>& outputs,
 
 bool TellsOfDryPlaces(const std::string& warning)
 {
-  const mcor_says code = vtkSPHCodeOf(warning);
-  return code == MCOR_SAYS_PLACE_DRY || code == MCOR_SAYS_PLACES_DRY;
+  const auto hasEnd = [&](const std::string& text) // the words behind the last value
+  { return warning.find(text.substr(text.rfind('%') + 2)) != std::string::npos; };
+  return hasEnd(mcor_text_of_PLACE_DRY) || hasEnd(mcor_text_of_PLACES_DRY);
 }
 
 bool MakeTable(Sharing& sharing, const std::string& what,

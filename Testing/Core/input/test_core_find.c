@@ -207,6 +207,24 @@ static void test_fluid(void** state)
                                        : !found.unused_type.text,
       request.find_fluid, found.unused_type.text);
   }
+  const struct
+  {
+    const char* name;
+    double low, high, fluid; /* -1: doubt is left */
+  } cases[] = { { "ParticleType", 0, 1, 0 }, { "particle_type", 0, 1, 0 }, { "isFluid", 0, 1, 1 },
+    { "isBoundary", 0, 1, 0 }, { "Type", 0, 3, 3 }, { "Type", 1, 3, 3 }, { "Type", 0, 1, 0 },
+    { "Type", 3, 3, -1 }, { "Type", 0, 2, -1 }, { "ParticleType", 0, 3, -1 },
+    { "ParticleType", 0, 0, -1 }, { "Type", -1, 3, -1 }, { "ParticleType", 0, 5, -1 },
+    { "Temperature", 0, 1, -1 }, { NULL, 0, 1, -1 } };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    const double low = cases[i].low, high = cases[i].high, values[COUNT] = { high, low, low, high };
+    const mcor_named array = real(cases[i].name, values);
+    request.find_fluid = 1;
+    find(&request, &array, 1, &found);
+    const double fluid = found.which[MCOR_ROLE_FLUID] < 0 ? -1 : found.fluid_value;
+    CORE_CHECK(fluid == cases[i].fluid, cases[i].name ? cases[i].name : "none", low, high, fluid);
+  }
   double nine[9] = { 8, 7, 6, 5, 4, 3, 2, 1, NAN };
   const mcor_named place = { NULL, MCOR_ELEMENT_FLOAT64, 3, 9, (double[27]){ 0 }, { 0, 0 } },
                    type = { "Type", MCOR_ELEMENT_FLOAT64, 1, 9, nine, { 0, 0 } };

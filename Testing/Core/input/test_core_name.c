@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests how arrays are recognised by their names, and how values suggest a period, the fluid and an
- * iso value. */
+/* Tests how arrays are recognised by their names, and how values suggest a period and an iso
+ * value. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -79,28 +79,6 @@ static void test_period_of_field_data(void** state)
   assert_true(period[0] == 0 && period[1] == 0);
   assert_true(mcor_tells_of_period("boundarytype") && mcor_tells_of_period("Box"));
   assert_false(mcor_tells_of_period("Boxes") || mcor_tells_of_period(NULL));
-}
-
-static void test_fluid_values(void** state)
-{
-  const struct
-  {
-    const char* name;
-    double low, high;
-    int clear;
-    double fluid;
-  } cases[] = { { "ParticleType", 0, 1, 1, 0 }, { "particle_type", 0, 1, 1, 0 },
-    { "isFluid", 0, 1, 1, 1 }, { "isBoundary", 0, 1, 1, 0 }, { "Type", 0, 3, 1, 3 },
-    { "Type", 1, 3, 1, 3 }, { "Type", 0, 1, 1, 0 }, { "Type", 3, 3, 0, 0 }, { "Type", 0, 2, 0, 0 },
-    { "ParticleType", 0, 3, 0, 0 }, { "ParticleType", 0, 0, 0, 0 }, { "Type", -1, 3, 0, 0 },
-    { "ParticleType", 0, 5, 0, 0 }, { "Temperature", 0, 1, 0, 0 }, { NULL, 0, 1, 0, 0 } };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
-  {
-    double fluid = -7;
-    const int clear = mcor_find_fluid_value(cases[i].name, cases[i].low, cases[i].high, &fluid);
-    CORE_CHECK(clear == cases[i].clear && fluid == (clear ? cases[i].fluid : -7),
-      cases[i].name ? cases[i].name : "none", cases[i].low, cases[i].high, clear, fluid);
-  }
 }
 
 static void test_view_ranks(void** state)
@@ -214,5 +192,5 @@ static void test_iso_value_of_wrong_scalars(void** state)
   assert_true(range[0] == 2 && range[1] == 5 && iso >= 2 && iso <= 5);
 }
 
-CORE_MAIN(NULL, NULL, test_names, test_period_of_field_data, test_fluid_values, test_view_ranks,
+CORE_MAIN(NULL, NULL, test_names, test_period_of_field_data, test_view_ranks,
   test_iso_values, test_iso_value_of_wrong_scalars)

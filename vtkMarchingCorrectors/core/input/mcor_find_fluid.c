@@ -91,16 +91,21 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
   return count < MCOR_KINDS ? count : 0;
 }
 
-/* Finds which value of an array marks fluid particles. Returns false if the array's name and values
- * leave doubt. */
+/* Finds which value of an array of particle types marks fluid: 0 or 1 if there are only these two,
+ * or 3 in DualSPHysics, where types 0 to 2 are fixed, moving and floating bodies. Returns false if
+ * the array's name and values leave doubt. */
 static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
-  bool whole = count > 0;
+  const mcor_kind* last = kinds + count - 1;
+  const bool is_solver = count > 1 && kinds->value >= 0 && kinds->value < 3 && last->value == 3 &&
+    mcor_is_usual_name(name, "type");
+  bool is_clear = is_solver || (count > 1 && kinds->value == 0 && last->value == 1);
   for (int k = 0; k < count; ++k)
   {
-    whole = whole && kinds[k].value == floor(kinds[k].value);
+    is_clear = is_clear && kinds[k].value == floor(kinds[k].value);
   }
-  return whole && mcor_find_fluid_value(name, kinds[0].value, kinds[count - 1].value, fluid);
+  *fluid = !is_clear ? *fluid : is_solver ? 3 : mcor_is_usual_name(name, "isfluid");
+  return is_clear;
 }
 
 /* Says that an array with several values of particle types is not used. */

@@ -73,26 +73,6 @@ int mcor_tells_apart(const char* name)
   return tells;
 }
 
-int mcor_find_fluid_value(const char* name, double low, double high, double* fluid)
-{
-  if (mcor_name_priority(MCOR_PARTICLE_TYPE, name) < 0)
-  {
-    return 0;
-  }
-  if (low == 0 && high == 1)
-  {
-    *fluid = mcor_is_usual_name(name, "isfluid");
-    return 1;
-  }
-  /* In DualSPHysics, types 0 to 2 are fixed, moving and floating bodies, and 3 is fluid. */
-  if (low >= 0 && low < 3 && high == 3 && mcor_is_usual_name(name, "type"))
-  {
-    *fluid = 3;
-    return 1;
-  }
-  return 0;
-}
-
 int mcor_view_priority(const char* name, int components, int is_real, int varies)
 {
   if (!name || !varies || mcor_name_priority(MCOR_PARTICLE_ID, name) >= 0 ||

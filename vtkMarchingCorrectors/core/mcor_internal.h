@@ -250,9 +250,7 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
     (size_t)((char*)&(s)->member - (char*)(s)) / sizeof(mcor_buffer))
 void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count);
 
-/* mcor_ranks.c. Turns what a function of options.ranks returns into a status. */
-mcor_status mcor_heard(mcor_context* context, int failed);
-/* Reduce numbers over all ranks; a single process has all values already. */
+/* mcor_ranks.c. Reduce numbers over all ranks; a single process has all values already. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count);
 mcor_status mcor_reduce_counts(

@@ -189,15 +189,15 @@ static void test_ranges(void** state)
   }
   const mcor_array array = { .data = values, .type = MCOR_FLOAT32 };
   const mcor_input input = { .count = count };
-  double range[2];
-  mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0, range);
-  assert_true(range[0] == (double)(count / 2) && range[1] == (double)(count - 1));
+  mcor_findings found = mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0);
+  assert_true(found.least[0] == (double)(count / 2) && found.most[0] == (double)(count - 1));
   assert_true(mcor_largest(NULL, &input, &array, 0) == (double)(count - 1));
   values[3] = -1e9f;
   assert_true(mcor_largest(NULL, &input, &array, 0) == 1e9);
   memset(solid, 1, (size_t)count);
-  mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0, range);
-  assert_true(range[0] > range[1] && mcor_largest_of(range[0], range[1]) == 0);
+  found = mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0);
+  assert_true(found.least[0] > found.most[0]);
+  assert_true(mcor_largest_of(found.least[0], found.most[0]) == 0);
 }
 
 CORE_MAIN(core_set_up, core_tear_down, test_every_element_once, test_several_at_once,

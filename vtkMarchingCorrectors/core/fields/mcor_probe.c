@@ -385,8 +385,10 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
     points.components = 3;
     for (int a = 0; a < 3; ++a)
     {
-      mcor_find_range(
-        context, &points, NULL, MCOR_SKIP_SOLIDS, samples->count, a, context->box.points + 2 * a);
+      const mcor_findings found =
+        mcor_find_range(context, &points, NULL, MCOR_SKIP_SOLIDS, samples->count, a);
+      context->box.points[2 * a] = found.least[0];
+      context->box.points[2 * a + 1] = found.most[0];
     }
     context->box.has_points = true;
     context->box.of_points = input->particles_version == 0 || context->run.far;

@@ -219,9 +219,9 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
   }
   if (widening)
   {
-    double range[2];
-    mcor_find_range(context, widening, input->solid, skip, input->count, 0, range);
-    MCOR_FAIL_IF(range[0] < 1, context, MCOR_INVALID_DATA, MCOR_SAY(WIDENING_FACTORS), range[0]);
+    const double least =
+      mcor_find_range(context, widening, input->solid, skip, input->count, 0).least[0];
+    MCOR_FAIL_IF(least < 1, context, MCOR_INVALID_DATA, MCOR_SAY(WIDENING_FACTORS), least);
     MCOR_FAIL_IF(
       mcor_needs_density(input), context, MCOR_INVALID_ARGUMENT, MCOR_SAY(WIDENING_NEEDS_VOLUMES));
   }

@@ -28,10 +28,9 @@ static mcor_findings mcor_measure_filling(const mcor_input* input)
     const mcor_array* array = k < 3 ? &positions
       : k < 4                       ? &input->smoothing_length
                                     : &input->density;
-    double range[2];
-    mcor_find_range(
-      NULL, array, input->solid, MCOR_SKIP_SOLIDS, input->count, k < 3 ? k : 0, range);
-    mcor_add_range(&found, k, range[0], range[1]);
+    const mcor_findings range =
+      mcor_find_range(NULL, array, input->solid, MCOR_SKIP_SOLIDS, input->count, k < 3 ? k : 0);
+    mcor_add_range(&found, k, range.least[0], range.most[0]);
   }
   found.sums[0] = input->solid ? 0 : input->count;
   for (int64_t i = 0; i < input->count && input->solid; ++i)

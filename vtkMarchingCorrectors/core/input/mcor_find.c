@@ -288,7 +288,7 @@ static mcor_message mcor_no_length(mcor_finder* f)
   const int64_t count = f->positions->tuples;
   const int spacing = mcor_find_named(f->arrays, f->count, MCOR_SPACING, 1, count);
   bool has_rhop = false, has_idp = false;
-  double range[2] = { 0, 0 };
+  mcor_findings range = mcor_no_findings();
   for (int i = 0; i < f->count; ++i)
   {
     has_rhop = has_rhop || mcor_is_usual_name(f->arrays[i].name, "rhop");
@@ -297,12 +297,13 @@ static mcor_message mcor_no_length(mcor_finder* f)
   if (spacing >= 0)
   {
     const mcor_array distances = mcor_view_of(f, spacing);
-    mcor_find_range(NULL, &distances, NULL, MCOR_SKIP_ABSENT, count, 0, range);
+    range = mcor_find_range(NULL, &distances, NULL, MCOR_SKIP_ABSENT, count, 0);
   }
-  const char* usual = range[0] > 0 && range[0] == range[1]
+  const double apart = range.least[0];
+  const char* usual = apart > 0 && apart == range.most[0]
     ? mcor_own(f,
-        mcor_text(" By '%s', particles are %g apart: %g is usual.", f->arrays[spacing].name,
-          range[0], 1.3 * range[0]))
+        mcor_text(" By '%s', particles are %g apart: %g is usual.", f->arrays[spacing].name, apart,
+          1.3 * apart))
     : NULL;
   return mcor_say(MCOR_SAY(NO_SMOOTHING_LENGTH),
     has_rhop && has_idp

@@ -94,8 +94,9 @@ static mcor_status mcor_drop_rounded_plane(
 {
   const mcor_array* x = &input->positions;
   const int axes[2] = { mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1) };
-  int64_t counts[3] = { 0 }; /* particles; sampled ones; sampled ones with a twin */
-  double area = 1;
+  /* Ranges along both axes. Sums: particles; sampled ones; sampled ones with a twin. */
+  mcor_findings found = mcor_no_findings();
+  int64_t* counts = found.sums;
   if (plane->at == 0 || (double)(float)plane->at != plane->at)
   {
     return MCOR_OK;
@@ -104,16 +105,14 @@ static mcor_status mcor_drop_rounded_plane(
   {
     counts[0] += mcor_is_present(input, i);
   }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts, 1));
   for (int a = 0; a < 2; ++a)
   {
-    double range[2];
-    mcor_find_range(context, x, input->solid,
-      input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT, input->count, axes[a], range);
-    MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, &range[0], 1));
-    MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, &range[1], 1));
-    area *= range[1] - range[0];
+    const mcor_findings range = mcor_find_range(context, x, input->solid,
+      input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT, input->count, axes[a]);
+    mcor_add_range(&found, a, range.least[0], range.most[0]);
   }
+  MCOR_TRY(mcor_reduce_findings(context, &found));
+  const double area = (found.most[0] - found.least[0]) * (found.most[1] - found.least[1]);
   if (ldexp(1, ilogb(plane->at) - 23) <= MCOR_COARSE_SHARE * sqrt(area / (double)counts[0]))
   {
     return MCOR_OK;

@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A component varies if it does on any rank, or if ranks have different values. */
 mcor_status mcor_measure_components(
   mcor_context* context, const mcor_input* input, mcor_globals* globals)
 {
@@ -34,21 +33,16 @@ mcor_status mcor_measure_components(
       {
         continue;
       }
-      double range[2];
-      mcor_find_range(context, array, input->solid, MCOR_SKIP_SOLIDS, input->count, c, range);
-      const double first = input->count > 0 ? mcor_array_at(array, 0, c) : NAN;
-      mcor_findings all = mcor_no_findings();
-      mcor_add_range(&all, 0, range[0], range[1]);
-      mcor_add_range(&all, 1, first, first);
-      if (input->solid && !(range[0] < range[1]))
-      {
-        mcor_find_range(context, array, NULL, MCOR_SKIP_SOLIDS, input->count, c, range);
-      }
-      all.sums[0] = range[0] < range[1];
+      mcor_findings all =
+        mcor_find_range(context, array, input->solid, MCOR_SKIP_SOLIDS, input->count, c);
+      const mcor_findings with_solids = input->solid && !(all.least[0] < all.most[0])
+        ? mcor_find_range(context, array, NULL, MCOR_SKIP_SOLIDS, input->count, c)
+        : all;
+      mcor_add_range(&all, 1, with_solids.least[0], with_solids.most[0]);
       MCOR_TRY(mcor_reduce_findings(context, &all));
       found->low = all.least[0];
       found->high = all.most[0];
-      found->varies = all.sums[0] > 0 || all.least[1] < all.most[1];
+      found->varies = all.least[1] < all.most[1];
       found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
     }
   }

@@ -189,23 +189,21 @@ static void mcor_component_slice(void* data, int slice, int64_t first, int64_t l
   job->slices[slice] = found;
 }
 
-void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
-  mcor_skip skip, int64_t count, int component, double range[2])
+mcor_findings mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  mcor_skip skip, int64_t count, int component)
 {
   mcor_range_job job = { .array = array, .solid = solid, .skip = skip, .component = component };
   const int slices =
     mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_component_slice, &job);
-  const mcor_findings found = mcor_merge_findings(job.slices, slices);
-  range[0] = found.least[0];
-  range[1] = found.most[0];
+  return mcor_merge_findings(job.slices, slices);
 }
 
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component)
 {
-  double range[2];
-  mcor_find_range(context, array, input->solid, MCOR_SKIP_ABSENT, input->count, component, range);
-  return mcor_largest_of(range[0], range[1]);
+  const mcor_findings found =
+    mcor_find_range(context, array, input->solid, MCOR_SKIP_ABSENT, input->count, component);
+  return mcor_largest_of(found.least[0], found.most[0]);
 }
 
 typedef struct mcor_legal_job

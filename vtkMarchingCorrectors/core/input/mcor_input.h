@@ -110,9 +110,9 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
  * becomes infinite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
-/* What a loop, or a slice of it, finds: ranges (an empty one has least > most), sums of whole
+/* What a loop, or a slice of it, finds: ranges (an empty one is DBL_MAX, -DBL_MAX), sums of whole
  * numbers, and the least of some indices. */
-#define MCOR_RANGES 13
+#define MCOR_RANGES 14
 #define MCOR_SUMS 4
 typedef struct mcor_findings
 {
@@ -137,10 +137,10 @@ mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
-/* Finds the least and greatest value of one component. skip: which of the particles that `solid`
- * marks are left out; none is if `solid` is NULL. Without particles the range is DBL_MAX, -DBL_MAX. */
-void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
-  mcor_skip skip, int64_t count, int component, double range[2]);
+/* Finds the range of one component, as range 0 of the result. skip: which of the particles that
+ * `solid` marks are left out; none is if `solid` is NULL. */
+mcor_findings mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  mcor_skip skip, int64_t count, int component);
 /* Returns the largest absolute value in a range; 0 if the range is empty. */
 static inline double mcor_largest_of(double low, double high)
 {

@@ -16,8 +16,7 @@
 
 /* While all positions are measured, the neighbours of a few fluid particles are counted. These
  * watched particles suffice to notice wrong smoothing lengths. mcor_end_watch sets the measure's
- * neighbours, spacing, filled and h_median. If the watched particles lie in a tilted plane, it also
- * finds whether all other particles lie in this plane. */
+ * neighbours, spacing, filled and h_median. */
 
 typedef struct mcor_watch
 {
@@ -27,9 +26,6 @@ typedef struct mcor_watch
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
   double normal[3];                          /* of the watched particles' plane; 0: none */
-  /* The greatest distances of particles from the plane: on the side of the normal, on the other
-   * side. */
-  double beyond[MCOR_SLICES][2];
 } mcor_watch;
 
 /* ---- A plane that is tilted in space ---- */
@@ -77,21 +73,12 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-/* Counts, for each watched particle, the neighbours in a chunk, and updates its distances to other
- * particles. low, high: the bounds of the chunk's positions. */
+/* Counts, for each watched particle, the neighbours in a chunk, and updates its distance to the
+ * nearest one. low, high: the bounds of the chunk's positions. */
 MCOR_VECTOR_LOOPS static void mcor_watch_positions(
   mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {
-  const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   const double(*x)[MCOR_CHUNK] = chunk->x;
-  double* beyond = watch->beyond[slice];
-  const int count = chunk->count;
-  for (int i = 0; i < count && mcor_has_normal(watch); ++i)
-  {
-    const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
-    beyond[0] = d > beyond[0] ? d : beyond[0];
-    beyond[1] = -d > beyond[1] ? -d : beyond[1];
-  }
   for (int s = 0; s < watch->count; ++s)
   {
     const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
@@ -102,13 +89,13 @@ MCOR_VECTOR_LOOPS static void mcor_watch_positions(
     {
       is_near = is_near && low[a] - at[a] < reach && at[a] - high[a] < reach;
     }
-    for (int i = 0; i < (is_near ? count : 0); ++i)
+    for (int i = 0; i < (is_near ? chunk->count : 0); ++i)
     {
       const double dx = x[0][i] - at[0], dy = x[1][i] - at[1], dz = x[2][i] - at[2];
       square[i] = dx * dx + dy * dy + dz * dz;
       neighbours += square[i] < reach * reach ? 1 : 0;
     }
-    for (int i = 0; i < (neighbours > 0 ? count : 0); ++i)
+    for (int i = 0; i < (neighbours > 0 ? chunk->count : 0); ++i)
     {
       *nearest = square[i] > 0 && square[i] < *nearest ? square[i] : *nearest;
     }
@@ -116,15 +103,14 @@ MCOR_VECTOR_LOOPS static void mcor_watch_positions(
   }
 }
 
-/* Joins the slices and ranks, and sets the measure's medians over the watched particles. If all
- * particles lie in the watched particles' plane, sets the measure's plane_normal. */
+/* Joins the slices and ranks, and sets the measure's medians over the watched particles. */
 static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 {
   mcor_measure* m = &context->measure;
   const mcor_space* space = &context->space;
   int64_t* neighbours = watch->neighbours[0];
   double count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED], h[MCOR_WATCHED],
-    *nearest = watch->nearest[0], *beyond = watch->beyond[0];
+    *nearest = watch->nearest[0];
   for (int slice = 1; slice < slices; ++slice)
   {
     for (int s = 0; s < watch->count; ++s)
@@ -147,21 +133,6 @@ static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int 
   m->spacing = mcor_median_of(spacing, watch->count);
   m->filled = mcor_median_of(filled, watch->count);
   m->h_median = mcor_median_of(h, watch->count);
-  if (!mcor_has_normal(watch))
-  {
-    return MCOR_OK;
-  }
-  for (int s = 1; s < slices; ++s)
-  {
-    beyond[0] = fmax(beyond[0], watch->beyond[s][0]);
-    beyond[1] = fmax(beyond[1], watch->beyond[s][1]);
-  }
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, beyond, 2));
-  if (beyond[0] + beyond[1] < MCOR_THIN * m->h_median)
-  {
-    memcpy(m->plane_normal, watch->normal, sizeof m->plane_normal);
-    m->plane_extent = beyond[0] + beyond[1];
-  }
   return MCOR_OK;
 }
 
@@ -191,8 +162,9 @@ enum
   MCOR_LENGTHS = 6, /* smoothing lengths of fluid particles */
   MCOR_KERNELS = 7, /* lengths of the kernels of all particles in use */
   MCOR_SCALARS = 8,
-  MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
-  MCOR_FACTORS = 12, /* factors of the smoothing lengths of fluid particles */
+  MCOR_SPOTS = 9,      /* positions of all particles in use: x, y, z */
+  MCOR_FACTORS = 12,   /* factors of the smoothing lengths of fluid particles */
+  MCOR_OFF_PLANE = 13, /* distances from the watched particles' plane, along its normal */
 
   MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
   MCOR_SOLIDS = 1,
@@ -277,7 +249,9 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   const mcor_context* context = job->context;
   const mcor_input* input = job->input;
   const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM,
-             is_widened = mcor_is_given(&input->widening);
+             is_widened = mcor_is_given(&input->widening),
+             has_normal = mcor_has_normal(&job->watch);
+  const double origin = has_normal ? mcor_dot(job->watch.normal, job->watch.sample[0].x) : 0;
   mcor_findings r = mcor_no_findings();
   mcor_places part[2]; /* the chunk's fluid, then its solids */
   double value[MCOR_CHUNK];
@@ -323,6 +297,12 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
       if (k == 0 || !input->ignore_solids)
       {
         mcor_watch_positions(&job->watch, slice, &part[k], low, high);
+        for (int i = 0; i < part[k].count && has_normal; ++i)
+        {
+          const double x[3] = { part[k].x[0][i], part[k].x[1][i], part[k].x[2][i] };
+          const double off = mcor_dot(job->watch.normal, x) - origin;
+          mcor_add_range(&r, MCOR_OFF_PLANE, off, off);
+        }
       }
       if (k == 0 || context->kept.uses_solids)
       {
@@ -335,8 +315,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
 
 /* Measures the particles of all ranks. A particle that is not finite is reported by its own rank
  * alone. */
-static mcor_status mcor_measure_particles(
-  mcor_context* context, const mcor_input* input, mcor_findings* r)
+static mcor_status mcor_measure_particles(mcor_context* context, const mcor_input* input)
 {
   mcor_measure* m = &context->measure;
   const mcor_options* options = context->run.options;
@@ -360,9 +339,10 @@ static mcor_status mcor_measure_particles(
   mcor_begin_watch(context, &job.watch);
   MCOR_TRY(
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
-  *r = mcor_merge_findings(job.slices, slices);
+  mcor_findings found = mcor_merge_findings(job.slices, slices);
+  const mcor_findings* r = &found;
   MCOR_TRY(mcor_end_watch(context, &job.watch, slices));
-  MCOR_TRY(mcor_reduce_findings(context, r));
+  MCOR_TRY(mcor_reduce_findings(context, &found));
   m->fluid_count = r->sums[MCOR_FLUID];
   m->solid_count = r->sums[MCOR_SOLIDS];
   for (int a = 0; a < 3; ++a)
@@ -383,6 +363,16 @@ static mcor_status mcor_measure_particles(
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->first;
+  const double extent = r->most[MCOR_OFF_PLANE] - r->least[MCOR_OFF_PLANE];
+  if (mcor_has_normal(&job.watch) && extent < MCOR_THIN * m->h_median)
+  {
+    memcpy(m->plane_normal, job.watch.normal, sizeof m->plane_normal);
+    m->plane_extent = extent;
+  }
+  if (context->run.far)
+  {
+    mcor_cut_bounds(context, r->least + MCOR_SPOTS, r->most + MCOR_SPOTS);
+  }
   return MCOR_OK;
 }
 
@@ -391,7 +381,6 @@ mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   mcor_measure* m = &context->measure;
-  mcor_findings found;
   *m = (mcor_measure){ .plane = context->plane, .not_finite = INT64_MAX };
   if (options->globals)
   {
@@ -404,11 +393,7 @@ mcor_status mcor_measure_input(
   {
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));
   }
-  MCOR_TRY(mcor_measure_particles(context, input, &found));
-  if (context->run.far)
-  {
-    mcor_cut_bounds(context, found.least + MCOR_SPOTS, found.most + MCOR_SPOTS);
-  }
+  MCOR_TRY(mcor_measure_particles(context, input));
   MCOR_FAIL_IF(
     m->fluid_count == 0, context, MCOR_INVALID_DATA, MCOR_SAY(NO_FLUID), (long long)m->solid_count);
   if (options->field == MCOR_WEIGHT_SUM)

@@ -20,9 +20,9 @@ static mcor_array mcor_lengths_of(const mcor_input* input)
 double mcor_least_smoothing_length(const mcor_input* input)
 {
   const mcor_array lengths = mcor_lengths_of(input);
-  double range[2];
-  mcor_find_range(NULL, &lengths, input->solid, MCOR_SKIP_SOLIDS, input->count, 0, range);
-  return range[0] <= range[1] ? range[0] : INFINITY;
+  const mcor_findings found =
+    mcor_find_range(NULL, &lengths, input->solid, MCOR_SKIP_SOLIDS, input->count, 0);
+  return found.least[0] <= found.most[0] ? found.least[0] : INFINITY;
 }
 
 double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least)

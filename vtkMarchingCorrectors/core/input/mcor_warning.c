@@ -124,9 +124,9 @@ static bool mcor_is_coarse(const mcor_suspicion* s, int* axis, double* step)
   *axis = 0;
   for (int a = 0; a < 3; ++a)
   {
-    double range[2];
-    mcor_find_range(NULL, &coordinates, input->solid, MCOR_SKIP_SOLIDS, count, a, range);
-    const double along = mcor_largest_of(range[0], range[1]);
+    const mcor_findings found =
+      mcor_find_range(NULL, &coordinates, input->solid, MCOR_SKIP_SOLIDS, count, a);
+    const double along = mcor_largest_of(found.least[0], found.most[0]);
     *axis = along > largest ? a : *axis;
     largest = fmax(along, largest);
   }

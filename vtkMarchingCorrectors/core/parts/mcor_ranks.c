@@ -7,7 +7,8 @@
 
 #include "mcor_internal.h"
 
-mcor_status mcor_heard(mcor_context* context, int failed)
+/* Turns what a function of options.ranks returns into a status. */
+static mcor_status mcor_heard(mcor_context* context, int failed)
 {
   MCOR_FAIL_IF(failed != 0, context, MCOR_CANCELLED, MCOR_SAY(RANK_FAILED));
   return MCOR_OK;

@@ -92,8 +92,8 @@ class Meter(CommandLineTest):
                     self.assertEqual([row["mass"] == "" for row in rows], [False] * len(rows))
 
     def refuse_measuring(self, usage, failures):
-        """Checks that these usages (status 2), these data (status 1), and faults that gauges and fluxes have in common are refused. The
-        table must stay as it was."""
+        """Checks that the command lines `usage` (status 2), the inputs `failures` (status 1), and faults common to gauges and fluxes are
+        refused. The table must stay as it was."""
         many = self.one[0] + ("es" if self.one[0] == "--flux" else "s")
         usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
             (["--iso", "0.2,0.5"], "all but one --iso value"), (["--iso", "0"], "--iso value above 0"),
@@ -257,7 +257,7 @@ class Flux(Meter):
         self.assertAlmostEqual(row["mass_flux"], 10 * row["volume_flux"], delta=1e-6)
 
     def test_volume_that_has_passed(self):
-        """The volume that has passed between two steps is the mean of their fluxes times the time between them."""
+        """The column `volume` grows between two steps by the mean of their fluxes times the time between them."""
         self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
         rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
         self.assertEqual([(row["time"], row["section"]) for row in rows],

@@ -241,7 +241,7 @@ class Modes(CommandLineTest):
                     self.one_sentence(self.run_program(*STEPS, "out.pvd", *order), 2, f"{first} and {second} exclude each other: .*; leave out one")
 
     def test_what_options_need(self):
-        """If an option lacks what it needs by its row in Options.def, the sentence names what is needed."""
+        """If the command line lacks what an option needs (see the option's row in Options.def), the error names what is missing."""
         text = (OPTIONS / "Options.def").read_text(encoding="utf-8")
         rows = re.findall(r'\nOPTION\("(--[\w-]+)",\s*"[^"]*",\s*(?:"[^"]*"\s*)+,\s*([A-Z_ |]+),\s*"([^"]+)",', text)
         self.assertGreater(len(rows), 15)

@@ -64,8 +64,8 @@ class Project(CommandLineTest):
             self.assertGreater((self.directory / "image.png").stat().st_size, 3000)
 
     def test_film(self):
-        """A film has one image for each step, in a list or with the step's number in its name. Each has the same bytes as in a single run.
-        A step that fails does not end the film."""
+        """A film has one image for each step, in a list or with the step's number in its name. Each image has the bytes that a single run
+        writes. A step that fails does not end the film."""
         options = ["--project", "z", "--resolution", "9", "--box=-1,1,-1,1,-1,1"]
         self.project(*options)
         expected = self.image.read_bytes()

@@ -43,7 +43,7 @@ void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call)
   }
 }
 
-/* Checks that both options give the same surface, or the same failure. */
+/* Checks that both sets of options give the same surface, or the same failure. */
 static void fuzz_check_alike(
   const fuzz_call* call, const mcor_options* options, const mcor_options* others)
 {

@@ -148,7 +148,7 @@ STATISTICS = (*EXACT, "CellsUsed", "TrianglesBeforeTrimming", "CorrectionMean", 
 
 def make_two_sizes():
     """Makes small particles for x < 2 and large ones beyond, whose supports hold many small particles. A rank without large particles must
-    learn from others how far away its particles are needed."""
+    learn from the other ranks how far away its particles are needed."""
     points, lengths = [], []
     for size, first, along in (0.05, 0.0, 40), (0.8, 2.0, 1):
         x, y, z = np.indices((along, *[round(1.2 / size)] * 2)).reshape(3, -1)

@@ -143,7 +143,7 @@ static void case_check_edges(case_run* run, int pairs)
   CASE_EXPECT(run, run->at->rough || c->noisy == 0, c->noisy);
   if (pairs)
   {
-    /* The paper's seeds may miss whole components, but not parts of one. */
+    /* Seeds by pairs, as in the paper, may miss whole components of the surface, but not parts of one. */
     CASE_EXPECT(run, c->components_partial == 0, c->components_partial, c->first);
   }
   else

@@ -121,7 +121,7 @@ static int edge_axis(const fixture* f, int64_t v)
   return axis;
 }
 
-/* Damages a surface in one way, and compares it as a trimmed one. Returns the same as damage(). */
+/* Damages a right surface in one way, and compares it as a trimmed one. Returns the figure that shows the damage. */
 static double damage_trimmed(fixture* f, int kind)
 {
   double* point = &f->surface.points[30];

@@ -131,8 +131,8 @@ class TestApart(unittest.TestCase):
 
 class TestTogether(unittest.TestCase):
     def test_one_set(self):
-        """If blocks are one set, in any order and beside empty ones, the surface equals this set's to the last bit. An array that one block
-        lacks is left out. The joined set is kept as long as the blocks stay the same."""
+        """If blocks are one set, in any order and beside empty ones, the surface equals that of the one set to the last bit. An array that one
+        block lacks is left out. The joined set is kept as long as the blocks stay the same."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         first, second = take(data, ~left), timed(take(data, left))

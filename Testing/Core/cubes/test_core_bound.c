@@ -304,9 +304,9 @@ static int count_above(
   return above;
 }
 
-/* Checks that the weight sum is at least iso at all nodes of the bricks that are proved to be inside. The proof looks
- * only at particles within half their support. At some iso values that the test uses, these particles suffice for some
- * nodes of a brick, but not for all. */
+/* Checks that the weight sum is at least iso at all nodes of the bricks that are proved to be inside. The proof uses
+ * only particles that have a node of the brick within half their support. At some iso values that the test uses, these
+ * particles suffice for some nodes of a brick, but not for all. */
 static void check_inside(mcor_context* context, const particles* p, const mcor_options* options,
   const cl_int4* bricks, int count, double iso)
 {

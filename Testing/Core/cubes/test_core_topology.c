@@ -31,8 +31,7 @@ static particle_set make_particles(
   return set;
 }
 
-/* Returns a scalar that is above 0 in a straight thread from the origin to `end`, thinner than a
- * cube. */
+/* Returns a scalar that is above 0 in a straight thread, thinner than a cube, from the origin to `end`. */
 static double thread(const double x[3], const double end[3])
 {
   const double along = fmin(fmax(mcor_dot(x, end) / mcor_dot(end, end), 0), 1);

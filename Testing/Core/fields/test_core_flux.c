@@ -349,7 +349,7 @@ static void test_disc_at_the_surface(void** state)
     fabs(r.volume_flux - expected->volume_flux) < 1e-5, r.volume_flux, expected->volume_flux);
 }
 
-/* The section touches the fluid with one corner only, exactly at the level. Its area is 0 or small, not NaN. */
+/* The section touches the fluid with one corner only, exactly at the level. The wet area is 0 or small, not NaN. */
 static void test_corner_on_the_level(void** state)
 {
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };

@@ -61,8 +61,8 @@ static uint64_t hash_of(mcor_context* context, const particle_set* set, double i
   return core_hash(&surface);
 }
 
-/* Makes `count` particles in few cells, `coincident` of them at one place, and 40 others. Checks that two orders of the
- * particles, in both forms of the kernels, give the same bits. */
+/* Makes `count` particles in few cells of the search grid, `coincident` of them at one place, and 40 others. Checks that two
+ * orders of the particles, in both forms of the kernels, give the same bits. */
 static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int coincident)
 {
   CORE_SET set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));

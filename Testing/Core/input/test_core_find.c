@@ -119,8 +119,8 @@ static void test_volumes(void** state)
   }
 }
 
-/* Elements of any type, also with gaps between them, must be read alike. Floats and doubles without gaps are not
- * copied. */
+/* Elements of any type, also with gaps between them, must be read alike. Aligned floats and doubles
+ * without gaps are not copied. */
 static void test_elements(void** state)
 {
   const float gaps[2 * COUNT] = { 1, 0, 2, 0, 3, 0, 4, 0 };
@@ -153,7 +153,7 @@ static void test_elements(void** state)
   }
 }
 
-/* An array that is both mass and weight is copied once: mcor_project compares their pointers. */
+/* An array that is both mass and weight is copied once: mcor_project compares the two pointers. */
 static void test_one_view(void** state)
 {
   const int32_t whole[COUNT] = { 1, 2, 3, 4 };

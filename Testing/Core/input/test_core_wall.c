@@ -140,8 +140,8 @@ static void test_share(void** state)
   }
 }
 
-/* Checks that a measured share gives the same surface as the same share set by hand, also if the kept search grid was
- * made for another share, and with global values. */
+/* Checks that a measured share gives the same surface as the same share set by hand: with the search grid kept from
+ * another share, and with global values. */
 static void test_measured(void** state)
 {
   CORE_SET set = make_tank();

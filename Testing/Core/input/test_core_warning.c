@@ -22,8 +22,8 @@ static void begin_call(warning_call* call)
   call->options = core_options(call->iso);
 }
 
-/* Checks that the call gives the expected warning alone, with this code and all of `words`, separated by |; if words is
- * NULL, it gives none. Returns how many warnings it gives. */
+/* Checks that the call gives only the warning `expected`, with this code and all of `words` (| separates them), or no
+ * warning if `words` is NULL. Returns the number of warnings. */
 static int check_call(mcor_context* context, warning_call* call, const char* name,
   mcor_warning expected, mcor_says code, const char* words)
 {

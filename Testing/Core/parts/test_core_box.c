@@ -188,8 +188,8 @@ static void given_globals(void** state)
   free(all.bytes);
 }
 
-/* Checks that a small box reads only the particles that reach it, and that a box away from all particles needs no
- * device memory. */
+/* Checks that a small box reads only the particles that reach it, and that a box away from all particles has no
+ * cells. */
 static void small_boxes(void** state)
 {
   const double iso = 0;

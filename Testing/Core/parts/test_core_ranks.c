@@ -421,8 +421,8 @@ static mcor_status sum_on_rank(core_rank* rank, void* data)
   return status;
 }
 
-/* Checks that ranks that also have all particles around their own find the same lengths by neighbours as one process,
- * to the last bit. */
+/* Checks that ranks find the same smoothing lengths by neighbours as one process, to the last bit, if each rank also
+ * has all particles around its own ones. */
 static void lengths_by_neighbours(void** state)
 {
   (void)state;

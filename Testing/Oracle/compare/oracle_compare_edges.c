@@ -325,8 +325,8 @@ static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
   return value ? *value : -1;
 }
 
-/* Checks that every segment that the oracle found is a side of one triangle for each cell that has the segment, in the
- * same direction. */
+/* Checks segments, which lead from one crossed edge to another on a cell's face: each must be a side of one triangle
+ * for each cell that has the segment, in the same direction. */
 static void compare_segments(compare_state* state, oracle_map* wanted, oracle_map* sides)
 {
   const oracle_lattice* lattice = &state->reference->lattice;

@@ -93,8 +93,8 @@ OTHER_TRIALS = {
        for option in ("--times", "--ids", "--time-step", "--fps", "--slow")
        for mode, output in (("project", "out.pvd"), ("probe", "out.csv"))}}
 QUESTIONS = {"--list-devices", "--list-arrays", "--help", "--version"}  # these need no mode
-# (option, mode) whose outputs need not differ: the option's effect is there anyway, or the option changes nothing but
-# the time.
+# (option, mode) whose outputs must be the same with and without the option: the option's effect is there anyway, or
+# the option changes nothing but the time.
 HOLDS = {("--free-surface", "gauge"), *(("--weight-sum", mode) for mode in ("slice", "line", "probe")),
          *(("--threads", mode) for mode in MODES)}
 

@@ -346,7 +346,7 @@ class TestTold(FilterTest):
         self.assertEqual(extract.GetFluidScalarRange(), (inside.min(), inside.max()))
 
     def test_what_the_next_update_takes(self):
-        """The range and the number of cells are known without a run, for any scalar, with and without walls, box and blocks."""
+        """The array, its range, the iso value and the number of cells are known without a run, with and without a box and blocks."""
         particles, ends = make_particles(), (RADIUS.min(), RADIUS.max())
         extract = vtkMarchingCorrectors()
         self.assertEqual((extract.GetNextScalarRange(), extract.GetNextCells()), ((0, 0), 0))

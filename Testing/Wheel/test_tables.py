@@ -86,8 +86,8 @@ def write_lammps(path, random, steps, scaled):
 
 
 def write_gadget_binary(path, random, named=False, order="<", double=False, files=1):
-    """Writes a snapshot as GADGET-2 does: gas, dark matter and stars. The mass of dark matter is in the header. Returns {label: values of
-    all types}."""
+    """Writes a snapshot as GADGET-2 does: gas, dark matter and stars. The mass of dark matter is in the header. Returns the numbers of
+    particles of the six types, and {label: values}."""
     counts = [int(random.integers(5, 40)), int(random.integers(1, 9)), 0, 0, int(random.integers(1, 9)), 0]
     table = [0, 2.5, 0, 0, 0, 0]
     total, real = sum(counts), order + ("f8" if double else "f4")

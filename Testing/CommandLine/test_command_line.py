@@ -299,7 +299,7 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(total, sum(seconds.values()), places=6)
 
     def test_chosen_iso_value(self):
-        """Without --iso the program chooses a value; core_find tests the choice. A film keeps the first step's value in all its steps."""
+        """Without --iso the program chooses a value; core_name tests the choice. A film keeps the first step's value in all its steps."""
         sentence = r"(?m)^iso value   (\S+), chosen for Radius, whose range is (\S+) \.\. (\S+) \("
         statistics = self.directory / "statistics.json"
         result = self.extract_good("--scalar", "Radius")
@@ -540,7 +540,7 @@ class Options(CommandLineTest):
             self.assertFalse(set(missing.split()) & names)
 
     def test_period_of_field_data(self):
-        """A period in the field data is mentioned, and used only with --periodic. core_find tests the forms of such
+        """A period in the field data is mentioned, and used only with --periodic. core_name tests the forms of such
         data."""
         free, length = ["--free-surface", "--no-attributes"], 10 * files.SPACING
         self.succeed(*free, "--periodic", f"{length!r},{length!r},0")

@@ -19,7 +19,7 @@ def block(sides, spacing=0.1, origin=(0, 0, 0)):
 
 
 def write_csv(path, points, arrays):
-    """Writes a table as text, which may hold nan and inf; VTK's formats may not."""
+    """Writes a table as text, which may hold nan and inf. VTK cannot read these from a .vtp file of text."""
     columns = [[p[a] for p in points] for a in range(3)] + list(arrays.values())
     path.write_text(",".join(["x", "y", "z", *arrays]) + "\n" +
                     "\n".join(",".join(map(repr, row)) for row in zip(*columns)) + "\n")

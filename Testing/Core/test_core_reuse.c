@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Checks that data that a context keeps between calls never change a result. Each parameter alone is changed right
+/* Checks that data that a context keeps between calls never change a result. One parameter at a time is changed right
  * after a call, and changed back. Each time a new context must give the same result. */
 
 #include "core_fixture.h"
@@ -158,7 +158,7 @@ STEP(solids, c->input.solid = c->other.solid; c->input.particles_version = 8)
 STEP(ignore_solids, c->input.ignore_solids = !c->input.ignore_solids)
 STEP(attributes, c->input.attributes = c->attributes + 1)
 STEP(attribute_count, c->input.attribute_count = 2)
-/* ---- steps for mcor_options, in the order of its members ---- */
+/* ---- steps for mcor_options ---- */
 STEP(sph_kernel, c->options.sph_kernel = MCOR_WENDLAND_C2)
 STEP(field, c->options.field = MCOR_SUM)
 STEP(weight_field, c->options.field = MCOR_WEIGHT_SUM; c->iso[0] = 0.5)

@@ -61,7 +61,7 @@ class TestWeird(unittest.TestCase):
                 *((says("NO_SUCH_ARRAY", "'NoSuch'", role), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
                     ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
                     ("Fluid", "fluid"))),
-                # Messages of the core reach the user; core_input tests every message.
+                # Messages of the core reach the user; core_input tests more of them.
                 (says("ARRAY_VALUE", "SmoothingLength", "17"), changed("SmoothingLength", 17, math.nan), {}),
                 (says("POSITION_NOT_FINITE", "20") + "|" + says("ARRAY_VALUE", "20"), moved, {}),
                 (says("BLOCKS_TOO_MANY"), cube(), {"CubeSize": 1e-4}), (says("NO_SUCH_DEVICE", "NoSuchDevice"), cube(), {"Device": "NoSuchDevice"})):

@@ -25,7 +25,7 @@ def grow(_, data):
     data.GetPointData().GetArray("Other").Modified()
 
 
-# Changes of arrays, versions and settings, one after the other; core_reuse tests all options.
+# Changes of arrays, versions and settings, one after the other; core_reuse tests more settings.
 STEPS = (
     {}, {"Value": (0, 0.5)}, {"InputArrayToProcess": (0, 0, 0, POINTS, "Other")}, {"CubeLevelLimit": 1},
     {"CubeSizeModeToUniform": ()}, {"CubeSizeModeToAdaptive": ()}, {"Box": (-2, 0.1, -0.2, 0.6, -2, 2), "UseBox": 1}, {"UseBox": 0},

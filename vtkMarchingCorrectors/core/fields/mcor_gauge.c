@@ -138,19 +138,13 @@ static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
   return MCOR_OK;
 }
 
-/* Returns the greatest distance between samples (unit L). */
-static double mcor_gauge_step(double h_scale, double smoothing_length_min)
-{
-  return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
-}
-
 /* Appends the samples of a line where particles may reach it. The lattice must be known. */
 static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 {
   mcor_context* context = job->base.context;
   const mcor_gauge_line* line = &job->lines[number];
   const mcor_measure* m = &context->measure;
-  const double step = mcor_gauge_step(context->run.options->h_scale, m->h_min);
+  const double step = MCOR_GAUGE_STEP * context->run.options->h_scale * m->h_min;
   const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
   double clip[2] = { 0, 1 }; /* the part of the line that particles may reach */
   for (int a = 0; a < 3; ++a)
@@ -162,11 +156,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     {
       continue; /* along a period, particles may be anywhere */
     }
-    if (way == 0)
-    {
-      clip[1] = low <= 0 && high >= 0 ? clip[1] : -1;
-      continue;
-    }
+    /* A line across the axis divides by 0, so it is in reach as a whole, or not at all. */
     clip[0] = fmax(clip[0], fmin(low / way, high / way));
     clip[1] = fmin(clip[1], fmax(low / way, high / way));
   }
@@ -500,7 +490,7 @@ static mcor_status mcor_gauge_particles(
   }
   MCOR_TRY(mcor_list_components(context, input, false, NULL));
   const double margin = options->globals
-    ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
+    ? MCOR_GAUGE_MARGIN * (MCOR_GAUGE_STEP * options->h_scale * options->globals->measured.h_min)
     : 0;
   return input->count == 0 || job->line_count == 0
     ? MCOR_OK

@@ -94,14 +94,9 @@ mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
   {
     return mcor_finish_field(context);
   }
-  const mcor_lattice* lattice = &context->lattice;
   for (int a = 0; a < 3 && has_box; ++a)
   {
-    const bool periodic = lattice->period[a] > 0;
-    double* cells = job->owned[a];
-    cells[0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
-    cells[1] = periodic ? cells[0] + lattice->period[a] : (double)lattice->last[a];
-    mcor_place_sides(lattice, a, job->box, cells);
+    mcor_place_sides(&context->lattice, a, job->box, job->owned[a]);
   }
   const bool ends_at_solids = mcor_ends_at_solids(context);
   double* places = malloc(3 * (size_t)MCOR_LEVEL_BATCH * sizeof *places);

@@ -86,6 +86,20 @@ double mcor_box_slack(const mcor_options* options)
 
 /* ---- Cells ---- */
 
+void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2])
+{
+  const bool periodic = lattice->period[axis] > 0;
+  const double first = periodic ? lattice->period_first[axis] : (double)lattice->first[axis];
+  const double last = periodic ? first + lattice->period[axis] : (double)lattice->last[axis];
+  side[0] = first;
+  side[1] = last;
+  for (int s = 0; s < 2 && sides; ++s)
+  {
+    const double at = ceil(sides[2 * axis + s] / lattice->edge[axis] - 0.5);
+    side[s] = fmin(fmax(at - (double)lattice->origin[axis], first), last);
+  }
+}
+
 /* A side further out than any cell, in halves of a cube. */
 #define MCOR_NO_SIDE (1 << 30)
 
@@ -102,27 +116,16 @@ static void mcor_place_halves(
     halves[3 + axis] = 2 * high;
     return;
   }
-  const bool periodic = lattice->period[axis] > 0;
-  const int first = periodic ? lattice->period_first[axis] : (int)lattice->first[axis];
-  const int last = periodic ? first + lattice->period[axis] : (int)lattice->last[axis];
+  double ends[2];
+  mcor_place_sides(lattice, axis, NULL, ends);
   for (int s = 0; s < 2; ++s)
   {
-    const int side = s == 0 ? low : high, end = s == 0 ? first : last;
+    const int side = s == 0 ? low : high, end = (int)ends[s];
     const double at = sides ? ceil(2 * (sides[2 * axis + s] / lattice->edge[axis])) : 0;
     const double half = at - 2 * (double)lattice->origin[axis];
-    const int open = periodic ? 2 * end : s == 0 ? -MCOR_NO_SIDE : MCOR_NO_SIDE;
+    const int open = lattice->period[axis] > 0 ? 2 * end : s == 0 ? -MCOR_NO_SIDE : MCOR_NO_SIDE;
     halves[3 * s + axis] =
       !sides || side == end ? open : (int)fmin(fmax(half, -MCOR_NO_SIDE), MCOR_NO_SIDE);
-  }
-}
-
-void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2])
-{
-  const double first = side[0], last = side[1];
-  for (int s = 0; s < 2 && sides; ++s)
-  {
-    const double at = ceil(sides[2 * axis + s] / lattice->edge[axis] - 0.5);
-    side[s] = fmin(fmax(at - (double)lattice->origin[axis], first), last);
   }
 }
 
@@ -140,9 +143,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   for (int a = 0; a < 3; ++a)
   {
     const bool periodic = lattice->period[a] > 0;
-    const double first = periodic ? lattice->period_first[a] : (double)lattice->first[a];
-    const double last = periodic ? first + lattice->period[a] : (double)lattice->last[a];
-    double side[2] = { first, last }, all[2] = { first, last };
+    double ends[2], side[2], all[2];
+    mcor_place_sides(lattice, a, NULL, ends);
     mcor_place_sides(lattice, a, sides, side);
     mcor_place_sides(lattice, a, whole, all);
     if (box->of_points)
@@ -152,10 +154,10 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
       const double *points = box->points + 2 * a, edge = lattice->edge[a];
       const double origin = (double)lattice->origin[a], rounding = 0.25 / (double)lattice->step[a];
       const double low = points[0] / edge - origin, high = points[1] / edge - origin;
-      if (!periodic || (low >= first - rounding && high <= last + rounding))
+      if (!periodic || (low >= ends[0] - rounding && high <= ends[1] + rounding))
       {
-        side[0] = fmin(fmax(floor(low), first), last);
-        side[1] = fmin(fmax(floor(high) + 1, first), last);
+        side[0] = fmin(fmax(floor(low), ends[0]), ends[1]);
+        side[1] = fmin(fmax(floor(high) + 1, ends[0]), ends[1]);
       }
     }
     box->first[a] = (int)side[0];
@@ -165,7 +167,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->whole_last[a] = (int)all[1];
     mcor_place_halves(
       lattice, a, whole, box->whole_first[a], box->whole_last[a], box->whole_halves);
-    box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
+    box->is_part = box->is_part || periodic || side[0] > ends[0] || side[1] < ends[1];
     box->is_empty = box->is_empty || side[0] >= side[1];
   }
 }

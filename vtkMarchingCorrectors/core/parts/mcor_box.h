@@ -11,8 +11,8 @@
 /* mcor_lattice.c. Lays the virtual grid over all that the particles' supports reach. */
 mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options);
 
-/* Limits the cells along an axis, [side[0], side[1]), to the cells of the box. sides NULL: there is
- * no box, and all cells stay. */
+/* Finds the cells of the box along an axis, [side[0], side[1]). sides NULL: there is no box; finds
+ * all cells of the period or of the lattice. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
 
 /* Finds the cells that the call owns. The lattice must be known. */

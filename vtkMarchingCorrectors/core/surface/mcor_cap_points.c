@@ -4,6 +4,7 @@
 /* Points of caps and of filled regions: evaluates the field at them, and appends them to the mesh's
  * vertices. */
 
+#include "mcor_box.h"
 #include "mcor_cap.h"
 
 #include <float.h>
@@ -116,17 +117,16 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper)
   const mcor_lattice* lattice = &context->lattice;
   const mcor_box* box = &context->box;
   const mcor_options* options = context->run.options;
-  const bool periodic = lattice->period[axis] > 0;
-  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
-  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
+  double ends[2];
   const int* sides = upper ? (options->ranks ? box->whole_last : box->last)
                            : (options->ranks ? box->whole_first : box->first);
-  const int side = sides[axis], last = (int)(upper ? end : begin);
+  mcor_place_sides(lattice, axis, NULL, ends);
+  const int side = sides[axis], last = (int)ends[upper];
   if (options->capping == MCOR_CAP_BOX && side != last)
   {
     return side;
   }
-  return options->capping && periodic ? last : -1;
+  return options->capping && lattice->period[axis] > 0 ? last : -1;
 }
 
 /* ---- Vertices ---- */

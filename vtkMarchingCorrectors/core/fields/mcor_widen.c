@@ -233,17 +233,6 @@ static mcor_status mcor_run_widen(
 
 /* ---- The call ---- */
 
-/* Returns the highest iso value of the free surface; 0.5 for scalars. */
-static double mcor_widen_iso(const mcor_options* options)
-{
-  double iso = 0.5;
-  for (int i = 0; i < options->iso_count && options->field == MCOR_WEIGHT_SUM; ++i)
-  {
-    iso = i == 0 ? options->iso_values[0] : fmax(iso, options->iso_values[i]);
-  }
-  return iso;
-}
-
 mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mcor_options* options,
   mcor_widening* widening)
 {
@@ -257,9 +246,11 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   MCOR_TRY(mcor_check_spelled_out(context, options));
   MCOR_FAIL_IF(!(options->widen >= 1 && options->widen <= 4), context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(WIDENING_ILLEGAL), options->widen);
-  mcor_widen_run run = {
-    .out = widening, .widest = options->widen, .iso = mcor_widen_iso(options)
-  };
+  mcor_widen_run run = { .out = widening, .widest = options->widen, .iso = 0.5 };
+  for (int i = 0; i < options->iso_count && options->field == MCOR_WEIGHT_SUM; ++i)
+  {
+    run.iso = i == 0 ? options->iso_values[0] : fmax(run.iso, options->iso_values[i]);
+  }
   widening->count = input->count;
   widening->factor = mcor_make_ones(input->count);
   widening->outside = calloc((size_t)(input->count > 0 ? input->count : 0) + 1, 1);

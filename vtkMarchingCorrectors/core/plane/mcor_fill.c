@@ -197,14 +197,14 @@ mcor_status mcor_take_lines(mcor_context* context)
   {
     mcor_cap_brick* brick = &nodes->bricks.of[b];
     brick->is_known = false;
-    brick->joined[2] = 0;
+    brick->joined = 0;
   }
   MCOR_TRY(mcor_take_cap_masks(context, nodes));
   for (int64_t n = MCOR_SIDE_NODES; n < nodes->node_count; ++n)
   {
     const mcor_cap_brick* brick = &nodes->bricks.of[n / MCOR_SIDE_NODES];
     const int bit = (int)(n % MCOR_SIDE_NODES);
-    const bool above = brick->above >> bit & 1, joined = brick->joined[2] >> bit & 1;
+    const bool above = brick->above >> bit & 1, joined = brick->joined >> bit & 1;
     fill->band[n] += brick->is_known ? above : nodes->value[n] >= line->iso;
     MCOR_TRY(
       mcor_allocated(context, !joined || mcor_table_number(&line->joined, (uint64_t)n, 0) >= 0));

@@ -98,9 +98,9 @@ typedef struct mcor_cap_brick
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
-  /* Masks by lowest node: the used cells; the ambiguous faces whose nodes above the iso value are
-   * joined. */
-  cl_ulong used, joined[3];
+  /* Masks by lowest node: the used cells; the side's ambiguous faces whose nodes above the iso value
+   * are joined. */
+  cl_ulong used, joined;
 } mcor_cap_brick;
 
 /* Nodes of a side have numbers MCOR_SIDE_NODES * brick + 0 to 15. Brick 0 stands for all bricks

@@ -286,7 +286,7 @@ static mcor_status mcor_visit_cap_square(
   const int face = mcor_side_bit(side, side->plane, lowest);
   const int cell = mcor_side_bit(side, side->plane - side->upper, lowest);
   const bool used = (side->upper ? &of[own->inner] : own)->used >> cell & 1;
-  const bool joined = own->joined[side->axis] >> face & 1;
+  const bool joined = own->joined >> face & 1;
   bool above[4], owned = true;
   double margin[4];
   int total = 0;

@@ -37,34 +37,6 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
   free(nodes->value);
 }
 
-/* Finds the plane of a side, and the range of its nodes. */
-static void mcor_set_cap_extent(
-  const mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const mcor_box* box = &context->box;
-  *nodes = (mcor_cap_nodes){ .axis = axis,
-    .upper = upper,
-    .plane = mcor_cap_plane(context, axis, upper),
-    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
-  nodes->inner = nodes->plane + (upper ? -1 : 1);
-  for (int a = 0; a < 3; ++a)
-  {
-    const int lower = mcor_cap_plane(context, a, 0), higher = mcor_cap_plane(context, a, 1);
-    const int first = lower >= 0 ? lower : (int)lattice->first[a];
-    const int last = higher >= 0 ? higher : (int)lattice->last[a];
-    const int low = box->first[a] - box->ring, high = box->last[a] + box->ring;
-    int* range = nodes->range[a];
-    range[0] = a == axis ? nodes->plane - upper : low > first ? low : first;
-    range[1] = a == axis ? range[0] + 1 : high < last ? high : last;
-    if (a >= context->space.axes) /* in two dimensions, a side is one row of squares */
-    {
-      range[0] = 0;
-      range[1] = 1;
-    }
-  }
-}
-
 /* ---- Bricks ---- */
 
 /* Fails if particles reach too many clusters (4^3 bricks) at a side. A cluster has 16^2 nodes on
@@ -268,11 +240,8 @@ mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)
     brick->is_known = ((const cl_ulong*)known)[slot] != 0;
     brick->above = brick->is_known ? ((const cl_ulong*)above)[slot] : brick->above;
     brick->valid = brick->is_known ? ((const cl_ulong*)valid)[slot] : brick->valid;
-    if (resolved)
-    {
-      memcpy(
-        brick->joined, (const cl_ulong*)joined + slot * MCOR_DECISION_MASKS, sizeof brick->joined);
-    }
+    brick->joined =
+      resolved ? ((const cl_ulong*)joined)[slot * MCOR_DECISION_MASKS + (size_t)nodes->axis] : 0;
   }
   return mcor_unmap_all(context, mappings, count, status);
 }
@@ -367,7 +336,28 @@ mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* 
 
 mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes)
 {
-  mcor_set_cap_extent(context, axis, upper, nodes);
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  *nodes = (mcor_cap_nodes){ .axis = axis,
+    .upper = upper,
+    .plane = mcor_cap_plane(context, axis, upper),
+    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
+  nodes->inner = nodes->plane + (upper ? -1 : 1);
+  for (int a = 0; a < 3; ++a)
+  {
+    const int lower = mcor_cap_plane(context, a, 0), higher = mcor_cap_plane(context, a, 1);
+    const int first = lower >= 0 ? lower : (int)lattice->first[a];
+    const int last = higher >= 0 ? higher : (int)lattice->last[a];
+    const int low = box->first[a] - box->ring, high = box->last[a] + box->ring;
+    int* range = nodes->range[a];
+    range[0] = a == axis ? nodes->plane - upper : low > first ? low : first;
+    range[1] = a == axis ? range[0] + 1 : high < last ? high : last;
+    if (a >= context->space.axes) /* in two dimensions, a side is one row of squares */
+    {
+      range[0] = 0;
+      range[1] = 1;
+    }
+  }
   MCOR_TRY(mcor_find_cap_bricks(context, context->run.iso.value, nodes));
   MCOR_TRY(mcor_take_cap_masks(context, nodes));
   MCOR_TRY(mcor_ask_cap_nodes(context, nodes, false));

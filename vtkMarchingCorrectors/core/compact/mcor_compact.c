@@ -20,7 +20,6 @@
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_parallel.h"
 #include "mcor_vector.h"
 
 #include <stdlib.h>
@@ -28,30 +27,24 @@
 
 /* ---- Vertices ---- */
 
-typedef struct mcor_reading
-{
-  const mcor_bunches* bunches;
-  void *node, *offset, *linear, *gradient;
-} mcor_reading;
-
 static void mcor_read_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_reading* from = data;
-  const mcor_context* context = from->bunches->context;
-  for (int64_t i = from->bunches->point_count + first; i < from->bunches->point_count + last; ++i)
+  const mcor_bunches* bunches = data;
+  const mcor_context* context = bunches->context;
+  for (int64_t i = bunches->point_count + first; i < bunches->point_count + last; ++i)
   {
-    const cl_int* node = (const cl_int*)from->node + 4 * i;
+    const cl_int* node = (const cl_int*)bunches->node + 4 * i;
     const int fix = MCOR_POINT_FIX + (node[3] >> MCOR_LEVEL_SHIFT);
     const double unit = (double)(INT64_C(1) << fix);
-    mcor_point* point = &from->bunches->points[i];
+    mcor_point* point = &bunches->points[i];
     double gradient[3];
     *point = (mcor_point){ .node = { node[0], node[1], node[2], node[3] },
-      .missed = mcor_get_real(context, from->linear, i) > 0 };
+      .missed = mcor_get_real(context, bunches->linear, i) > 0 };
     for (int a = 0; a < 3; ++a)
     {
       point->at[a] = ((int64_t)node[a] << fix) +
-        (int64_t)(mcor_get_real(context, from->offset, 4 * i + a) * unit);
-      gradient[a] = mcor_get_real(context, from->gradient, 4 * i + a);
+        (int64_t)(mcor_get_real(context, bunches->offset, 4 * i + a) * unit);
+      gradient[a] = mcor_get_real(context, bunches->gradient, 4 * i + a);
     }
     mcor_normalise(gradient);
     for (int a = 0; a < 3; ++a)
@@ -79,43 +72,33 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
     bunches->points = points;
     mcor_use_large_pages(points, bytes);
   }
-  mcor_reading from = { .bunches = bunches };
-  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &from.node },
-    { &mesh->offset, 4 * n * real, &from.offset }, { &mesh->linear, n * real, &from.linear },
-    { &mesh->gradient, 4 * n * real, &from.gradient } };
+  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &bunches->node },
+    { &mesh->offset, 4 * n * real, &bunches->offset },
+    { &mesh->linear, n * real, &bunches->linear },
+    { &mesh->gradient, 4 * n * real, &bunches->gradient } };
   mcor_status status = mcor_map_all(context, views, 4);
   MCOR_THEN(status,
     mcor_parallel_run(context, mesh->vertex_count - bunches->point_count, MCOR_LIGHT_GRAIN,
-      mcor_read_slice, &from, NULL));
+      mcor_read_slice, bunches, NULL));
   bunches->point_count = mesh->vertex_count;
   return mcor_unmap_all(context, views, 4, status);
 }
-
-/* For vertices that are being appended to the mesh: their nodes, and where the lines begin on which
- * they are corrected. */
-typedef struct mcor_adding
-{
-  const mcor_bunches* bunches;
-  cl_int* node;
-  void* offset; /* real [][4] */
-} mcor_adding;
 
 /* Gives each appended vertex the node of the vertex that it replaces, and the offset from this
  * node. */
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_adding* add = data;
-  const mcor_bunches* bunches = add->bunches;
+  const mcor_bunches* bunches = data;
   for (int64_t i = first; i < last; ++i)
   {
     mcor_start* start = &bunches->starts.of[i];
     start->last = bunches->of[start->vertex].now;
     const cl_int* node = bunches->points[start->last].node;
     const int fix = MCOR_POINT_FIX + (node[3] >> MCOR_LEVEL_SHIFT);
-    memcpy(add->node + 4 * i, node, 4 * sizeof *node);
+    memcpy((cl_int*)bunches->node + 4 * i, node, 4 * sizeof *node);
     for (int a = 0; a < 3; ++a)
     {
-      mcor_put_real(bunches->context, add->offset, 4 * i + a,
+      mcor_put_real(bunches->context, bunches->offset, 4 * i + a,
         (double)(start->at[a] - ((int64_t)node[a] << fix)) / (double)(INT64_C(1) << fix));
     }
   }
@@ -132,16 +115,18 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
   {
     return MCOR_OK;
   }
-  mcor_adding add = { bunches, malloc(16 * n), calloc(n, width) };
-  mcor_status status = mcor_allocated(context, add.node && add.offset);
+  bunches->node = malloc(16 * n);
+  bunches->offset = calloc(n, width);
+  mcor_status status = mcor_allocated(context, bunches->node && bunches->offset);
   MCOR_THEN(
-    status, mcor_parallel_run(context, count, MCOR_HEAVY_GRAIN, mcor_add_slice, &add, NULL));
+    status, mcor_parallel_run(context, count, MCOR_HEAVY_GRAIN, mcor_add_slice, bunches, NULL));
   MCOR_THEN(status, mcor_extend_vertices(context, first, first + count));
   MCOR_THEN(status, mcor_reserve(context, &mesh->evaluations, o + n));
-  MCOR_THEN(status, mcor_append_bytes(context, &mesh->node, 16 * o, add.node, 16 * n));
-  MCOR_THEN(status, mcor_append_bytes(context, &mesh->offset, width * o, add.offset, width * n));
-  free(add.node);
-  free(add.offset);
+  MCOR_THEN(status, mcor_append_bytes(context, &mesh->node, 16 * o, bunches->node, 16 * n));
+  MCOR_THEN(
+    status, mcor_append_bytes(context, &mesh->offset, width * o, bunches->offset, width * n));
+  free(bunches->node);
+  free(bunches->offset);
   MCOR_TRY(status);
   mesh->march_count = first;
   mesh->vertex_count = first + count;
@@ -165,19 +150,10 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Triangles that are left, at the beginning of each slice: `cells`, if not NULL, goes with them. */
-typedef struct mcor_leaving
-{
-  const mcor_bunches* bunches;
-  cl_ulong* cells;
-  int64_t first[MCOR_SLICES], left[MCOR_SLICES];
-} mcor_leaving;
-
 /* Keeps the triangles whose corners still differ. */
 static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_leaving* leaving = data;
-  const mcor_bunches* bunches = leaving->bunches;
+  mcor_bunches* bunches = data;
   int64_t to = first;
   for (int64_t t = first; t < last; ++t)
   {
@@ -189,36 +165,45 @@ static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
         bunches->triangles[3 * to + c] =
           place[c] < bunches->vertex_count ? place[c] : bunches->points[place[c]].replaces;
       }
-      if (leaving->cells)
+      if (bunches->cells)
       {
-        leaving->cells[to] = leaving->cells[t];
+        bunches->cells[to] = bunches->cells[t];
       }
       ++to;
     }
   }
-  leaving->first[slice] = first;
-  leaving->left[slice] = to - first;
+  bunches->slice_first[slice] = first;
+  bunches->slice_left[slice] = to - first;
 }
 
 /* Keeps what is left of the triangles. Copies each appended vertex that is still in use to the place
  * of the vertex that it replaces. */
-static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_int* pairs)
+static mcor_status mcor_end_bunches(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
   mcor_mesh* mesh = &context->mesh;
-  mcor_leaving leaving = { .bunches = bunches, .cells = cells };
-  const size_t width = 3 * sizeof(cl_int);
+  const size_t width = 3 * sizeof(cl_int),
+               appended = (size_t)(bunches->point_count - bunches->vertex_count);
   size_t left = 0, count = 0;
   int slices;
+  bunches->pairs = malloc(2 * appended * sizeof *bunches->pairs + 1);
+  MCOR_TRY(mcor_allocated(context, bunches->pairs));
+  if (mcor_follows_cells(context))
+  {
+    const size_t bytes = (size_t)bunches->triangle_count * sizeof *bunches->cells;
+    bunches->cells = malloc(bytes);
+    MCOR_TRY(mcor_allocated(context, bunches->cells));
+    MCOR_TRY(mcor_read(context, &context->box.cells, 0, bunches->cells, bytes));
+  }
   MCOR_TRY(mcor_parallel_run(
-    context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_keep_slice, &leaving, &slices));
+    context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_keep_slice, bunches, &slices));
   for (int i = 0; i < slices; ++i)
   {
-    const size_t from = (size_t)leaving.first[i], n = (size_t)leaving.left[i];
+    const size_t from = (size_t)bunches->slice_first[i], n = (size_t)bunches->slice_left[i];
     memmove(bunches->triangles + 3 * left, bunches->triangles + 3 * from, n * width);
-    if (cells)
+    if (bunches->cells)
     {
-      memmove(cells + left, cells + from, n * sizeof *cells);
+      memmove(bunches->cells + left, bunches->cells + from, n * sizeof *bunches->cells);
     }
     left += n;
   }
@@ -227,15 +212,16 @@ static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_i
     const int32_t v = bunches->points[place].replaces;
     if (bunches->of[v].now == place)
     {
-      pairs[count++] = v;
-      pairs[count++] = place;
+      bunches->pairs[count++] = v;
+      bunches->pairs[count++] = place;
     }
   }
   mesh->triangle_count = (int)left;
   MCOR_TRY(mcor_write(context, &mesh->triangles, bunches->triangles, left * width));
-  if (cells)
+  if (bunches->cells)
   {
-    MCOR_TRY(mcor_write(context, &context->box.cells, cells, left * sizeof *cells));
+    MCOR_TRY(
+      mcor_write(context, &context->box.cells, bunches->cells, left * sizeof *bunches->cells));
   }
   const struct
   {
@@ -245,7 +231,7 @@ static mcor_status mcor_end_bunches(mcor_bunches* bunches, cl_ulong* cells, cl_i
     { &mesh->gradient, 4 }, { &mesh->vertex_weight, 1 },
     { &mesh->means, context->attributes.count } };
   mcor_buffer replaced = { 0 };
-  mcor_status status = mcor_write(context, &replaced, pairs, count * sizeof *pairs);
+  mcor_status status = mcor_write(context, &replaced, bunches->pairs, count * sizeof(cl_int));
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     MCOR_THEN(status,
@@ -260,8 +246,8 @@ static mcor_status mcor_merge(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
   const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)bunches->vertex_count, triangles = (size_t)bunches->triangle_count,
-               corners = 3 * triangles * sizeof(int32_t);
+  const size_t n = (size_t)bunches->vertex_count,
+               corners = 3 * (size_t)bunches->triangle_count * sizeof(int32_t);
   bunches->of = malloc(n * sizeof *bunches->of);
   bunches->triangles = malloc(corners);
   bunches->before = malloc(corners);
@@ -275,15 +261,7 @@ static mcor_status mcor_merge(mcor_bunches* bunches)
   MCOR_TRY(mcor_add_vertices(bunches));
   MCOR_TRY(mcor_take_apart(bunches));
   MCOR_TRY(mcor_move_slivers(bunches));
-  const size_t bytes = mcor_follows_cells(context) ? triangles * sizeof(cl_ulong) : 0;
-  cl_ulong* cells = bytes > 0 ? malloc(bytes) : NULL;
-  cl_int* pairs = malloc(2 * ((size_t)bunches->point_count - n) * sizeof *pairs + 1);
-  mcor_status status = mcor_allocated(context, pairs && (cells || bytes == 0));
-  MCOR_THEN(status, mcor_read(context, &context->box.cells, 0, cells, bytes));
-  MCOR_THEN(status, mcor_end_bunches(bunches, cells, pairs));
-  free(cells);
-  free(pairs);
-  return status;
+  return mcor_end_bunches(bunches);
 }
 
 mcor_status mcor_compact(mcor_context* context)
@@ -313,5 +291,7 @@ mcor_status mcor_compact(mcor_context* context)
   free(bunches.before);
   free(bunches.points);
   free(bunches.starts.of);
+  free(bunches.cells);
+  free(bunches.pairs);
   return status;
 }

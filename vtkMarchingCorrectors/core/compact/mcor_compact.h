@@ -6,6 +6,7 @@
 /* Compact contours: merges vertices of one lattice node, and corrects them. See mcor_compact.c. */
 
 #include "mcor_internal.h"
+#include "mcor_parallel.h"
 
 #include <stdatomic.h>
 
@@ -85,6 +86,16 @@ typedef struct mcor_bunches
   size_t point_room;
   int point_count;
   MCOR_LIST(mcor_start) starts;
+  /* For loops over vertices: views of the mesh's buffers or, of vertices that are being appended,
+   * their nodes, and where the lines begin on which they are corrected (real [][4]). */
+  void *node, *offset, *linear, *gradient, *ends;
+  /* Along each axis, the node coordinates of the sides that caps close, then of the sides of the
+   * period; vertices on these sides stay. -1: no such side. */
+  int side[3][4];
+  cl_ulong* cells; /* [triangle_count] if mcor_follows_cells, else NULL */
+  cl_int* pairs;   /* of vertices: one that is replaced, then the one that replaces it */
+  /* The triangles that are left stand at the beginning of each slice. */
+  int64_t slice_first[MCOR_SLICES], slice_left[MCOR_SLICES];
 } mcor_bunches;
 
 static inline bool mcor_is_merged(const mcor_bunches* bunches, int32_t v)
@@ -106,21 +117,16 @@ static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
   return mcor_is_merged(bunches, v) ? bunches->of[v].first : v;
 }
 
-/* Whether a triangle or line is left after merging: its corners must differ. */
-static inline bool mcor_is_left(const int32_t corner[3], int corners)
-{
-  return corner[0] != corner[1] &&
-    (corners == 2 || (corner[1] != corner[2] && corner[2] != corner[0]));
-}
-
-/* Finds the places in the mesh of a triangle's corners. Returns whether the triangle is left. */
+/* Finds the places in the mesh of a triangle's or line's corners. Returns whether it is left after
+ * merging: its corners must differ. */
 static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_t place[3])
 {
   for (int c = 0; c < 3; ++c)
   {
     place[c] = bunches->of[bunches->triangles[3 * t + c]].now;
   }
-  return mcor_is_left(place, bunches->corners);
+  return place[0] != place[1] &&
+    (bunches->corners == 2 || (place[1] != place[2] && place[2] != place[0]));
 }
 
 /* Sets the place in the mesh of vertex v. If v is the first vertex of a merged bunch, sets the

@@ -17,7 +17,6 @@
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"
-#include "mcor_parallel.h"
 
 /* Most edges of a fan: one for each triangle around a bunch. A bunch with more stays apart. */
 #define MCOR_FAN_LIMIT 48
@@ -28,15 +27,6 @@
 
 /* ---- Nodes ---- */
 
-/* What mcor_key_slice needs. side: along each axis, the node coordinates of the sides that caps
- * close, then of the sides of the period; vertices on these sides stay. -1: no such side. */
-typedef struct mcor_keying
-{
-  const mcor_bunches* bunches;
-  void* ends;
-  int side[3][4];
-} mcor_keying;
-
 /* Gives each vertex the key of its node: the end of its edge that is nearer by linear
  * interpolation; if both are equally near, the lower end. The key contains the last bit of the
  * level: levels side by side differ by one, so nodes of different levels have different keys.
@@ -44,8 +34,7 @@ typedef struct mcor_keying
  * leaves, or belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_keying* keying = data;
-  const mcor_bunches* bunches = keying->bunches;
+  const mcor_bunches* bunches = data;
   const mcor_context* context = bunches->context;
   for (int64_t v = first; v < last; ++v)
   {
@@ -54,14 +43,14 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
     bool stays = v >= bunches->march_count || (node[3] >> 2 & 1);
     for (int i = 0; i < 12 && !stays; ++i)
     {
-      stays = i / 4 != axis && node[i / 4] << level == keying->side[i / 4][i % 4];
+      stays = i / 4 != axis && node[i / 4] << level == bunches->side[i / 4][i % 4];
     }
     uint64_t key = MCOR_FROZEN;
     if (!stays)
     {
       cl_int at[3] = { node[0], node[1], node[2] };
-      at[axis] += fabs(mcor_get_real(context, keying->ends, 2 * v)) >
-        fabs(mcor_get_real(context, keying->ends, 2 * v + 1));
+      at[axis] += fabs(mcor_get_real(context, bunches->ends, 2 * v)) >
+        fabs(mcor_get_real(context, bunches->ends, 2 * v + 1));
       key = mcor_cap_key(at) ^ (uint64_t)(level & 1) << 63;
     }
     bunches->of[v] = (mcor_bunch_vertex){
@@ -76,24 +65,23 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   mcor_context* context = bunches->context;
   const mcor_lattice* lattice = &context->lattice;
   const mcor_mesh* mesh = &context->mesh;
-  mcor_keying keying = { .bunches = bunches };
   for (int i = 0; i < 12; ++i)
   {
     const int axis = i / 4, upper = i % 2, period = lattice->period[axis];
-    keying.side[axis][i % 4] = i % 4 < 2 ? mcor_cap_plane(context, axis, upper)
-      : period > 0                       ? lattice->period_first[axis] + upper * period
-                                         : -1;
+    bunches->side[axis][i % 4] = i % 4 < 2 ? mcor_cap_plane(context, axis, upper)
+      : period > 0                         ? lattice->period_first[axis] + upper * period
+                                           : -1;
   }
   const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
   void* cut_edges = NULL;
   const mcor_mapping views[] = {
-    { &mesh->ends, 2 * (size_t)bunches->march_count * context->cl.real_size, &keying.ends },
+    { &mesh->ends, 2 * (size_t)bunches->march_count * context->cl.real_size, &bunches->ends },
     { &mesh->cut_edges, cuts * sizeof(cl_ulong), &cut_edges }
   };
   mcor_status status = mcor_map_all(context, views, cuts > 0 ? 2 : 1);
   MCOR_THEN(status,
     mcor_parallel_run(
-      context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &keying, NULL));
+      context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, bunches, NULL));
   /* Freezes the corners of caps. Marks the vertices at the ends of cut edges as held: keys of cuts
    * refer to them, so they may be merged, but do not move alone. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;

@@ -5,7 +5,6 @@
  * slivers. */
 
 #include "mcor_compact.h"
-#include "mcor_parallel.h"
 #include "mcor_vector.h"
 
 /* Badness of a triangle, or line, that is turned over: its normal and the sum of its corners' unit
@@ -50,44 +49,41 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Marks merged bunches of a triangle as bad: the bunches that did not reach the surface or, if all
- * of them did and the triangle is turned over, all of them. Marks the widest corner of a sliver. */
-static void mcor_judge_triangle(const mcor_bunches* bunches, int64_t t)
-{
-  const cl_int* corner = bunches->triangles + 3 * t;
-  int32_t place[3];
-  int widest;
-  bool missed = false;
-  if (!mcor_places_of(bunches, t, place))
-  {
-    return;
-  }
-  for (int c = 0; c < bunches->corners; ++c)
-  {
-    missed = missed || (bunches->points[place[c]].missed && mcor_is_merged(bunches, corner[c]));
-  }
-  const double badness = missed ? 0 : mcor_badness(bunches, place, &widest);
-  for (int c = 0; c < bunches->corners && (missed || badness == MCOR_TURNED); ++c)
-  {
-    if (mcor_is_merged(bunches, corner[c]) && (!missed || bunches->points[place[c]].missed))
-    {
-      mcor_set_state(bunches, corner[c], MCOR_BUNCH_BAD);
-    }
-  }
-  if (bunches->corners == 3 && badness > MCOR_SLIVER)
-  {
-    const int32_t v = mcor_stand_in(bunches, corner[widest]);
-    const bool moves =
-      bunches->of[v].key != MCOR_FROZEN && (!bunches->of[v].held || mcor_is_merged(bunches, v));
-    atomic_store_explicit(&bunches->of[v].wide, moves, memory_order_relaxed);
-  }
-}
-
+/* Marks merged bunches of each triangle as bad: the bunches that did not reach the surface or, if
+ * all of them did and the triangle is turned over, all of them. Marks the widest corner of a
+ * sliver. */
 static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
 {
+  const mcor_bunches* bunches = data;
   for (int64_t t = first; t < last; ++t)
   {
-    mcor_judge_triangle(data, t);
+    const cl_int* corner = bunches->triangles + 3 * t;
+    int32_t place[3];
+    int widest;
+    bool missed = false;
+    if (!mcor_places_of(bunches, t, place))
+    {
+      continue;
+    }
+    for (int c = 0; c < bunches->corners; ++c)
+    {
+      missed = missed || (bunches->points[place[c]].missed && mcor_is_merged(bunches, corner[c]));
+    }
+    const double badness = missed ? 0 : mcor_badness(bunches, place, &widest);
+    for (int c = 0; c < bunches->corners && (missed || badness == MCOR_TURNED); ++c)
+    {
+      if (mcor_is_merged(bunches, corner[c]) && (!missed || bunches->points[place[c]].missed))
+      {
+        mcor_set_state(bunches, corner[c], MCOR_BUNCH_BAD);
+      }
+    }
+    if (bunches->corners == 3 && badness > MCOR_SLIVER)
+    {
+      const int32_t v = mcor_stand_in(bunches, corner[widest]);
+      const bool moves =
+        bunches->of[v].key != MCOR_FROZEN && (!bunches->of[v].held || mcor_is_merged(bunches, v));
+      atomic_store_explicit(&bunches->of[v].wide, moves, memory_order_relaxed);
+    }
   }
   (void)slice;
 }
@@ -137,7 +133,7 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
       const int32_t v = bunches->starts.of[i].vertex;
       for (int32_t e = mcor_is_merged(bunches, v) ? -1 : of[v].star; e >= 0; e = bunches->before[e])
       {
-        mcor_judge_triangle(bunches, e / 3);
+        mcor_judge_slice(bunches, 0, e / 3, e / 3 + 1);
       }
     }
   }

@@ -54,7 +54,7 @@ class Header:
         return values
 
     def read_fields(self, declaration):
-        """Returns [(field, C type, pointers, array length)]."""
+        """Returns (field, C type, number of stars, array length or None) for each field of a declaration."""
         callback = re.match(r"int \( \* (\w+) \) \(", declaration)
         if callback:
             return [(callback.group(1), "callback", 0, None)]
@@ -151,8 +151,8 @@ class Rows:
 
 
 def program_options(folder):
-    """Returns {option: (argument, help, modes, member)} of Options.def. A mode is a word such as "surface";
-    the word "usual" marks the options that most people need."""
+    """Returns {option: (argument, help, modes, member)} of Options.def. A mode is a word such as "surface"; the word "usual" marks
+    the options that most people need. member: the core's name of the option, or ""."""
     words = {}
     for name, value in re.findall(r"^  ([A-Z]+) = ([\w| ]*\w)", (folder / "Job.h").read_text(encoding="utf-8"), re.M):
         words[name] = [name.lower()] if value.isdigit() else [word for each in value.split(" | ") for word in words[each]]

@@ -42,9 +42,9 @@
  * or densities by neighbours, "RankNeighbors", with one component per process.
  *
  * @warning
- * Every piece is contoured by itself, unless processes share the surface. Particles of a
- * neighbouring piece, including ghosts, are particles like all others: without them the surface is
- * trimmed at the cut, and with them both pieces have the surface there.
+ * Every piece of the input is contoured by itself, unless processes share the surface. Ghosts and
+ * other particles of a neighbouring piece are particles like all others: without them the surface
+ * is trimmed at the cut, and with them both pieces have the surface there.
  *
  * @warning
  * An observer of the progress may change the filter while an update runs, but not the values in the
@@ -167,7 +167,7 @@ public:
 
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
-   * the plain sum of the paper, which falls to zero at a free surface, and may have a sheet there.
+   * the plain sum of the paper, which falls to 0 at a free surface, so that a sheet may arise there.
    */
   vtkSPHFlagMacro(ShepardNormalization, 1);
 
@@ -244,8 +244,8 @@ public:
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
    * fluid, with triangles that share the points of the lines. The other values divide the region
    * into bands. The cell array "BandValue" has a line's iso value, or the iso value at which a
-   * triangle's band begins; the point array "IsoValue" has the same values. Off by default.
-   * An update fails if the particles do not lie in a plane.
+   * triangle's band begins; the point array "IsoValue" has the same for lines and bands.
+   * Off by default. An update fails if the particles do not lie in a plane.
    */
   vtkSPHFlagMacro(Filled, 0);
 

@@ -14,8 +14,8 @@
  * else it is computed from the particles' distances and masses, see mcor_input in mcor.h.
  *
  * The blocks of composite data form one set of particles, with the arrays that all blocks have; or
- * each block is processed by itself, see SetBlocks(). If one then fails, its place in the output
- * stays empty, and the error names the block.
+ * each block is processed by itself, see SetBlocks(). If a block then fails, its place in the
+ * output stays empty, and the error names the block.
  *
  * @sa
  * vtkMarchingCorrectors
@@ -264,8 +264,8 @@ public:
 
   /**
    * If no fluid array is named, look for something that clearly tells fluid from walls: an array
-   * such as ParticleType that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
-   * together, with names such as "walls". If off (the default), a warning names what was found.
+   * such as ParticleType that holds 0 and 1, or the codes of DualSPHysics; or, if blocks are
+   * TOGETHER, blocks' names such as "walls". If off (the default), a warning names what was found.
    */
   vtkSPHChoiceFlagMacro(DetectFluid);
 
@@ -468,8 +468,8 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Reports a warning, naming the block, once in a run for each kind, however many blocks there
-   * are. Kinds are those of mcor_warning, and the ones below.
+   * Reports a warning, naming the block, unless this run has given a warning of the same kind.
+   * kind: a value of mcor_warning or of the enumeration below.
    */
   void WarnOnce(int kind, const std::string& message);
   enum
@@ -488,7 +488,6 @@ protected:
 
   /** Returns the input that has the particles; null: there is none. */
   vtkDataObject* GetParticles();
-  /** Returns the input port of the particles. */
   virtual int GetParticlesPort() { return 0; }
 
   void FillOptions(mcor_options& options) const;
@@ -517,7 +516,7 @@ private:
   /** Makes a data object of this class, from `like` if `like` has this class. */
   static vtkSmartPointer<vtkDataObject> NewOutput(
     const std::string& className, vtkDataObject* like);
-  /** Finds the six bounds of the fluid, or three points on densest lines; 0: they are unknown. */
+  /** Finds the six bounds of the fluid or, if `densest`, points on three densest lines; 0: unknown. */
   double* FindNextBounds(bool densest);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);

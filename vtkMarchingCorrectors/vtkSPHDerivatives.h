@@ -63,7 +63,7 @@ public:
   /** Add the gradient of the array, unit of the array / L. On by default. */
   vtkSPHFlagMacro(ComputeGradient, 1);
 
-  /** The name of the array of gradients, "Gradients" by default. GradientsCorrected is named after it. */
+  /** The name of the array of gradients, "Gradients" by default. GradientsCorrected gets this name with "Corrected" behind it. */
   vtkSPHTextMacro(ResultArrayName, "Gradients");
 
   /** Replace existing arrays of the same names. Off by default: the new ones are called NAME_SPH. */

@@ -130,7 +130,7 @@ constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 /** Tuples that one thread copies at a time. */
 constexpr vtkIdType CopyGrain = 1 << 14;
 
-/** Copies values, replaced by `null` where `valid` is 0. */
+/** Copies values, but writes `null` for tuples whose `valid` is 0. */
 template <typename ValueT>
 void Copy(const double* from, const std::uint8_t* valid, double null, vtkIdType tuples,
   int components, ValueT* to)

@@ -84,7 +84,6 @@ public:
   /** Also leave solid particles out when volumes are computed from positions. Off by default. */
   vtkSPHChoiceFlagMacro(IgnoreSolids);
 
-  /** The image. */
   vtkImageData* GetImage();
 
 protected:

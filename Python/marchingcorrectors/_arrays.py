@@ -154,9 +154,10 @@ class Found:
         self.positions, self.count, self.found = positions, len(positions), c.mcor_found()
 
     def find(self, arrays, wants, names=None, values=None, only=(), taken=(), excluded=(), **words):
-        """Lets the core find `wants` among the arrays. Returns self. arrays: {name: array}, or pairs. wants: names of mcor_want.
-        names: {role: name}. values: {role: number}. only: a list of (name, low, high). taken, excluded: names of arrays.
-        words: further members of mcor_request. If something is missing, `error` says so; raises MemoryError without memory."""
+        """Lets the core find, among the arrays, what a call needs. Returns self. arrays: {name: array}, or pairs. wants: what is needed, by
+        names of mcor_want. names: {role: name of the array to use}. values: {role: one number for all particles}. only: a list of (array's
+        name, low, high); other particles are left out. taken: names of arrays that the call computes. excluded: names of other arrays that
+        must not become attributes. words: further members of mcor_request. `error` says what is missing. Raises MemoryError."""
         pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
         request = c.mcor_request(wants=sum(WANTS[name] for name in wants), active=-1)
         for role, name in (names or {}).items():
@@ -214,7 +215,7 @@ class Arguments(Found):
                             data=self.kept[-1].ctypes.data, name=as_bytes(name) if name else None)
 
     def per_particle(self, values, role, name=None):
-        """Returns a view of an array of (particles,) or (particles, components)."""
+        """Returns a view of an array of the shape (particles,) or (particles, components)."""
         return self.view(self.shaped(values, role), name or role)
 
     def shaped(self, values, role):
@@ -403,7 +404,7 @@ def take_all(result):
 
 def take_each(pointers, arguments, shape, more=()):
     """Returns {name: array} of the attributes that the core did not leave out. An array is float32 if the given attribute is.
-    pointers: the core's arrays; NULL in some empty results."""
+    Its shape is `shape`, then the attribute's components, then `more`. pointers: the core's arrays; NULL in some empty results."""
     arrays = {}
     for i, (name, (components, kind)) in enumerate(arguments.kinds.items()):
         values = take(pointers[i], shape + components + more) if pointers else None

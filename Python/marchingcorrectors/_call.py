@@ -90,9 +90,9 @@ def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
 
 
 def prepare(positions, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
-    """Returns the core's arguments; their `units` convert further arguments. words: Keywords. named: the arrays that `fluid` and
-    `only` may name; by default the attributes. wants: names of mcor_want. nothing: the warning's words if there is no fluid; None
-    makes this an error. roles: arrays by names in mcor_role."""
+    """Returns the core's arguments; their `units` convert further arguments. words: the call's keywords. named: the arrays that
+    `fluid` and `only` may name; by default the attributes. wants: names of mcor_want. nothing: the warning's words if there is no
+    fluid; None makes this an error. roles: arrays, by the names of their roles in mcor_role."""
     options, attributes = dict(words), attributes or {}
     source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
@@ -160,7 +160,7 @@ class Finder(Arguments):
 
     def add_sizes(self, given, estimate):
         """Adds the quantities and the scalar to the request. given: {role: array, value or None}; the scalar may also be a
-        name. estimate: estimate_smoothing_length."""
+        name. estimate: the keyword estimate_smoothing_length."""
         self.ratio = None
         if isinstance(estimate, str):
             name, equals, ratio = estimate.partition("=")

@@ -220,7 +220,8 @@ def take_spray(surface, particles, words, iso, least, velocity=None):
     fluid particles where the sum of the weights is below `iso`. A particle that is nearest to a point of a piece that stays is no
     spray, even if its sum is below `iso`, as at the tip of a piece.
 
-    words: keywords of free_surface(), which made the surface, with nearest_particle. velocity: the name of the array of velocities.
+    words: the keywords, with nearest_particle, by which free_surface() made the surface. least: of small_pieces(). velocity: the name of
+    the array of velocities, or None.
     """
     if surface.line_offsets is not None:
         raise InvalidArgument("Spray is for three dimensions; leave --spray out.")
@@ -350,8 +351,8 @@ def run_convert(arguments):
 
 
 def read_surface(paths):
-    """Reads .vtp files, or .pvtp lists of such files, that are pieces of one surface. Returns their time, or None if they have no
-    time, and the whole surface."""
+    """Reads .vtp files, or .pvtp lists of such files, that are pieces of one surface. Returns two values: their time, None if
+    they have none; and the whole surface."""
     time, points, triangles, line_points, lengths, arrays, count = None, [], [], [], [], {}, 0
     for path in [piece for path in paths for piece in (list_pieces(path) if path.suffix.lower() == ".pvtp" else [path])]:
         if path.suffix.lower() != ".vtp" or not path.is_file():

@@ -52,7 +52,7 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[Non
     attributes: {name: array}, or a data frame, to be carried to the surface: real ones as the mean of
         the particles around, integers and bools from the nearest particle.
     scalar_dot: a second vector for each particle; the scalar is then the dot product.
-    solid: (particles,), True or not 0 for walls. They take no part in the field.
+    solid: (particles,), True or not 0 for walls. Walls take no part in the field.
     fluid: ("Type", 0) or "Type=0": particles with any other value in this array of the file or of the attributes are solid.
         (array, 0) gives the array itself. "auto": an array with a usual name tells the fluid, if it does so clearly.
     outputs: further arrays of the surface, by their names below: outputs="residual", or ("residual", "gradients"); each is
@@ -383,7 +383,7 @@ FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, r
 
 
 def _as_section(section, name, units):
-    """Returns a section's shape, a number of mcor_section_shape; points (n, 3), of a disc the centre and the normal; and the radius."""
+    """Returns a section's shape, a number of mcor_section_shape; points (n, 3), or a disc's centre and normal; a disc's radius, else 0."""
     def numbers(values, shape):
         array = contiguous(values, "section").astype(np.float64)
         if array.shape != shape:
@@ -410,7 +410,7 @@ def _as_section(section, name, units):
 
 
 def _as_sections(sections, units):
-    """Returns names and structures, and the arrays that must stay alive as long as the structures."""
+    """Returns the sections' names, the core's structures, and the arrays that must stay alive as long as the structures."""
     is_one = isinstance(sections, np.ndarray) or (
         isinstance(sections, (tuple, list)) and len(sections) > 0 and (isinstance(sections[0], str) or np.ndim(sections) == 2))
     if not is_one and not isinstance(sections, (Mapping, tuple, list)):

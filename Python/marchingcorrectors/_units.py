@@ -68,7 +68,7 @@ class Units:
                 "mass": without_unit(mass), "density": without_unit(density)}
 
     def options(self, words):
-        """Converts cube_size, box and periodic, which are lengths."""
+        """Returns the options, with the lengths cube_size, box and periodic as plain numbers in the unit of the positions."""
         return {name: self.lengths(value, name) if name in ("box", "periodic") or name == "cube_size" and value
                 else value for name, value in words.items()}
 

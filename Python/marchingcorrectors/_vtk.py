@@ -106,7 +106,7 @@ def request_of(algorithm, index, points):
 # -- particles among the points of a set or of blocks --
 
 def walk(tree, empty=False):
-    """Yields the iterator at each node. empty: also at leaves without data."""
+    """Yields the iterator at each node. empty: leaves without data are nodes, too."""
     at = tree.NewTreeIterator()
     at.VisitOnlyLeavesOff()
     at.SetSkipEmptyNodes(not empty)
@@ -344,8 +344,8 @@ class Particles(Arguments):
         return to_numpy(self._summed[name])
 
     def has_free_surface(self):
-        """Returns whether the free surface is what a user sees first. The core gets the densities, which tell a liquid, even if
-        no volumes are made from them."""
+        """Returns whether a user who chooses no array and no iso value sees the free surface. The core gets the densities, which
+        tell a liquid, even if no volumes are made from them."""
         given = c.mcor_input.from_buffer_copy(self.input)
         given.density = self.found.views[ROLES["density"]]
         return lib.mcor_has_free_surface(ctypes.byref(given), None)

@@ -44,7 +44,7 @@ def formatted(text, columns):
 
 
 def rows_lack(folder):
-    """Returns the members of mcor_options and mcor_statistics that have no row in the .def files."""
+    """Returns the members of mcor_options and mcor_statistics that have no row in the .def files, although they need one."""
     scope = {}
     exec((folder / "_structs.py").read_text(encoding="utf-8"), scope)  # This is the file that was just written.
     rows = {*scope["OPTIONS"], *(member for _, _, member, _ in scope["STATISTICS"])}

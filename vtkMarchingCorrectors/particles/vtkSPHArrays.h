@@ -85,8 +85,8 @@ vtkSmartPointer<vtkDataArray> vtkSPHBorrow(const ValueT* values, int components,
   return array;
 }
 
-/** Makes a VTK array that owns these malloc'ed values, and sets `values` to null. If there are no
- * tuples, the caller still owns them. */
+/** Makes a VTK array that owns these malloc'ed values, and sets `values` to null. If `tuples` is
+ * 0, the caller still owns the values. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
 {

@@ -34,10 +34,10 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
 }
 
 /**
- * Joins each block's array that has the name of `first`, one block after the other. A wall that
- * lacks the array gets the first tuple of `first` at each point. Returns null if a block that is no
- * wall lacks the array, if a wall lacks an array of particle types, or if a block's array of this
- * name has another type or size.
+ * Joins each block's array that has the name of `first`, one block after the other. The points
+ * of a wall that lacks the array get the first tuple of `first`; but if `first` is an array of
+ * particle types, walls must have it, too. Returns null if a block lacks the array and must have it,
+ * or if a block's array of this name has another type or size.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)

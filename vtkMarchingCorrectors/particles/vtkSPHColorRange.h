@@ -22,7 +22,7 @@ class vtkDataSet;
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHColorRange
 {
 public:
-  /** isLeftOut: marks the points that do not count; empty: all count. Used if the data have no polygons and no lines. */
+  /** isLeftOut, for data without polygons and lines: marks the points that do not count; empty: all count. */
   explicit vtkSPHColorRange(vtkDataSet* data, const std::vector<bool>& isLeftOut = {});
 
   /**

@@ -17,7 +17,7 @@ class vtkFieldData;
 class vtkMultiProcessController;
 class vtkPointSet;
 
-/** Names of arrays; empty: not found. */
+/** Names of arrays; empty: not found. FluidValue: the value in the array Fluid that marks fluid. */
 struct vtkSPHFound
 {
   std::string SmoothingLength, Volume, Mass, Density, Velocity, Fluid;
@@ -45,7 +45,7 @@ VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsApart(const char* name);
 /** Returns how usual a name is for a column of positions, see mcor_name_priority. */
 VTKMARCHINGCORRECTORS_EXPORT int vtkSPHPositionPriority(const char* name);
 
-/** Returns a period as six bounds. Three lengths are placed around the particles' extent. */
+/** Returns the six bounds of a period. period: these bounds, or three lengths, which mcor_place_period() places by the extent. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
@@ -56,7 +56,7 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
 
-/** Returns a period as six bounds. Three lengths are placed around the extent of all processes' particles. Collective. */
+/** Does what vtkSPHBoundsOfPeriod() does, with the extent of all processes' particles. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 VTK_ABI_NAMESPACE_END

@@ -53,9 +53,9 @@ struct vtkSPHWanted
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
- * Writes into the choice the detected fluid, or in UnusedType a sentence about an array that seems
- * to mark fluid but is not used. Writes the array to contour into `first` if `first` is not null and
- * has no name. Collective.
+ * Writes the detected fluid into the choice or, into UnusedType, a sentence about an array that
+ * seems to mark fluid but is not used. Writes the array to contour into `first` if `first` is not
+ * null and has no name. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);

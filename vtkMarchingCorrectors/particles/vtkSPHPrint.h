@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-/** Prints members of the class: CubeSize as a line "Cube Size: 0.1". */
+/** Prints each member on a line of its own, such as "Cube Size: 0.1" for CubeSize. */
 #define vtkSPHPrintMacro(...) vtkSPHPrint(os, indent, #__VA_ARGS__, __VA_ARGS__)
 
 VTK_ABI_NAMESPACE_BEGIN

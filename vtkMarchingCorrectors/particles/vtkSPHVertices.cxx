@@ -26,7 +26,7 @@ bool IsVertex(int type)
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX;
 }
 
-/** A data set's list with its vertex cells: the verts of poly data, or all cells of a grid. Tuple i of the cell data belongs to cell i. */
+/** The list that has a data set's vertex cells: the verts of poly data, or all cells of a grid. Cell i has tuple i of the cell data. */
 struct Cells
 {
   vtkCellArray* List = nullptr;

@@ -165,7 +165,7 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
 }
 }
 
-// Lists the shifts that move a point within the period to each of its images where pieces may be.
+// Lists the shifts from a point in the period to its images where pieces with (or without) volume may be.
 std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
 {
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };

@@ -49,10 +49,9 @@ mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const
 using Sphere = std::array<double, 4>;
 
 /**
- * Lists, for each rank, the points that lie in one of its spheres, or in an image of one. Points
- * far away do not slow an octree down, but would slow down a locator with buckets of one size.
- * VTK's other trees keep places in single precision, so they would miss neighbours far from the
- * origin.
+ * Lists, for each rank, the points in that rank's spheres, or in images of these spheres. Points far
+ * away do not slow an octree down, but would slow down a locator with buckets of one size. VTK's
+ * other trees keep places in single precision, so they would miss neighbours far from the origin.
  */
 vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
   const std::vector<std::vector<Sphere>>& spheresOfRanks, vtkPoints* points)
@@ -98,9 +97,9 @@ vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
 }
 
 /**
- * Gets the particles of other ranks that lie in the spheres around this rank's particles, and
- * appends them to `arrays`. order: the new order of this rank's particles: first the particles whose
- * spheres reach other ranks' boxes. Returns the number of these particles. Collective.
+ * Gets the particles of other ranks that lie in spheres of these radii around this rank's particles,
+ * and appends them to `arrays`. order: the new order of this rank's particles, which begins with the
+ * ones whose spheres reach other ranks' boxes. Returns how many do. Collective.
  */
 vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)

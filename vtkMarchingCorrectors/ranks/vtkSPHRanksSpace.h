@@ -94,7 +94,7 @@ private:
    * tree divides among the `count` ranks from `rank` on.
    */
   bool Reaches(int rank, int count, const double at[3], double radius) const;
-  /** Adds to `found` those of the `count` ranks from `rank` on whose boxes the cube reaches. */
+  /** Adds to `found` each of these ranks whose box the cube reaches, see Reaches(). */
   void AddReached(
     int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 

@@ -202,9 +202,9 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
   }
 }
 
-// Chooses the active scalars among the particles' attributes that vary on the surface, and the iso
-// value if there are several iso values. The contoured scalar does not count if there is only one
-// iso value: it varies by rounding alone. For vectors, the magnitudes must vary.
+// Chooses the active scalars among the particles' attributes that vary on the surface. If there are
+// several iso values, the array of iso values may be chosen, too. If there is one, the contoured
+// scalar is not chosen: it varies by rounding alone. For vectors, the magnitudes must vary.
 void vtkMarchingCorrectorsOutput::ChooseActive(vtkPolyData* output, const Merge& merge) const
 {
   vtkPointData* data = output->GetPointData();
@@ -303,7 +303,7 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
 
 namespace
 {
-/// Adds a parameter: its number or, if `isWord`, the word with this index in `words`.
+/// Adds a parameter: the number `value` or, if `isWord`, the word with the index `value` in `words`.
 template <typename T>
 void AddOption(vtkFieldData* data, const std::string& name, bool isWord, const char* words, T value)
 {

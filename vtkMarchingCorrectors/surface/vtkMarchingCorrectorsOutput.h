@@ -17,8 +17,8 @@ class vtkPolyData;
 class vtkSPHParticles;
 
 /**
- * Lists the arrays that the core computes at points, in the output's order: bit of mcor_output,
- * member of mcor_surface, components, name, and the filter's flag for it.
+ * Lists the arrays that the core computes at points, in the output's order. Each array has a bit
+ * of mcor_output, a member of mcor_surface, components, a name, and a flag of the filter.
  */
 #define vtkMarchingCorrectorsArrays(ARRAY)                                                         \
   ARRAY(MCOR_OUT_NORMALS, normals, 3, "Normals", ComputeNormals)                                   \

@@ -62,7 +62,7 @@ private:
   void WarnOfLostArrays();
   bool IsInBoth(vtkAbstractArray* array) const;
   std::string NameOfStep(int step) const;
-  /** Returns the way along an axis to the nearest image of a point. way: to the point itself. */
+  /** Returns the way along an axis to the nearest image of a point. way: the way to the point itself. */
   double Nearest(double way, int axis) const;
 
   Step Steps[2];

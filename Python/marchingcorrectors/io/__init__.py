@@ -41,12 +41,12 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
          walls: Sequence[PathName] = (), step: int = 0) -> Particles:
     """Returns the particles of one time.
 
-    path: a file, or a list of files of bodies (VTK's, tables) that are one set.
-    types: for GADGET-like files: names, such as "gas", "dark_matter", "stars", or numbers; by default gas.
-    walls: files that hold walls, listed in `path` or not; by default, if there are several files, their names tell (Wall,
-        Boundary, ...).
-    step: the number of a step in a file of several (.vtkhdf, .xyz, .gro, LAMMPS' dumps, H5Part, lists); -1 is the last one. The
-        result's `times` are the times of all steps.
+    path: a file, or a list of files that together are one set of particles, such as a file for each body (VTK's files, tables).
+    types: the types of particles in GADGET-like files: names, such as "gas", "dark_matter", "stars", or numbers; by default gas.
+    walls: the files that hold walls; `path` may list them, too. By default, if there are several files, those with names such
+        as Wall or Boundary hold walls.
+    step: the number of the step, if the file holds several steps (.vtkhdf, .xyz, .gro, LAMMPS' dumps, H5Part) or lists them (.pvd,
+        .series); -1 is the last step. The result's `times` are the times of all steps.
 
     Raises FileError. No code that a file may hold is run.
     """

@@ -198,7 +198,7 @@ class Particles:
 
 
 def usual(names, quantity):
-    """Returns the name that the core knows as most usual for a quantity, or None."""
+    """Returns the one of `names` that is most usual for a quantity; None if none is usual."""
     named, count = list_named([(name, NO_VALUE) for name in names])
     best = lib.mcor_find_named(named, count, c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()], 1, 0)
     return None if best < 0 else names[best]

@@ -297,7 +297,7 @@ def list_pieces(path):
 
 
 def list_series(path):
-    """Returns {time: files}, in the order of time, of a .vtk.series, ParaView's list of files and times."""
+    """Reads a .vtk.series, ParaView's list of files and times. Returns {time: files} in the order of time."""
     try:
         entries = json.loads(path.read_bytes())["files"]
         found = sorted(((float(each["time"] + 0), each["name"] + "") for each in entries), key=lambda pair: pair[0])
@@ -417,7 +417,7 @@ class Legacy:
         return np.empty(0)
 
     def section(self, words, into):
-        """Reads the section that these words begin. into: where its arrays go. Returns where the next section's arrays go."""
+        """Reads the section that these words begin. Adds its arrays to the list `into`. Returns the list for the next section's arrays."""
         word, rest = words[0].upper(), words[1:]
 
         def put(name, *how):  # VTK writes %20 for a blank in a name.

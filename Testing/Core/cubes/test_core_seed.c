@@ -211,7 +211,7 @@ static void test_pairs_in_each_form(void** state)
 }
 
 /* Where all particles have the iso value, rounding may put the mean on either side. Cells there must be seeds, and stay
- * seeds if their nodes are known from another iso value. */
+ * seeds if an extraction with another iso value evaluated their nodes before. */
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };

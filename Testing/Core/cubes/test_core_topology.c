@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests topology by the field with bridges and gaps of known shape; the oracle tests it with noise. */
+/* Tests MCOR_TOPOLOGY_FIELD, with which the field decides how nodes are connected. The particles here form bridges and
+ * gaps of known shape; the oracle's tests use noise. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"

@@ -115,8 +115,8 @@ static void nearest_particles(void** state)
   core_check_cuts(*state, "nearest", &input, &options);
 }
 
-/* Returns an input with masses alone, so that volumes are computed. The first attribute is the position; in some boxes
- * all x have one sign. */
+/* Returns an input with masses and without volumes, so that volumes are computed. The first attribute is the position.
+ * The particles near some boxes have x of one sign, although the global range of x has both. */
 static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
 {
   mcor_input input = core_input(set);

@@ -90,9 +90,8 @@ public:
 
   ///@{
   /**
-   * If the last update between two steps found that velocities do not fit the motion: the motion
-   * of the particles, divided by the motion that their velocities give. Else 0, also after another
-   * update between the same two steps.
+   * If the velocities do not fit the motion between the last two steps: the motion of the
+   * particles, divided by the motion that their velocities give. Else 0.
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);

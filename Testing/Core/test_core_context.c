@@ -477,9 +477,15 @@ static void test_profile(void** state)
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
   mcor_surface lost;
   const mcor_status not_written = mcor_extract(full, &input, &options, &lost);
+  const bool told = core_told(full, "PROFILE_FILE|core_context_profile.csv") && lost.point_count == 0;
+  mcor_options tiny = options; /* a call that fails anyway tells its own reason */
+  tiny.memory_limit = 1000;
+  const mcor_status failed = mcor_extract(full, &input, &tiny, &lost);
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
   assert_int_equal(not_written, MCOR_INVALID_ARGUMENT);
-  assert_true(core_told(full, "PROFILE_FILE|core_context_profile.csv") && lost.point_count == 0);
+  assert_true(told);
+  assert_int_equal(failed, MCOR_OUT_OF_CAPACITY);
+  assert_true(core_told(full, "DEVICE_MEMORY_LIMIT"));
   CORE_SURFACE kept = core_extract(full, &input, &options);
   assert_true(core_hash(&kept) == expected);
   remove(path);

@@ -214,6 +214,9 @@ class Program(unittest.TestCase):
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
+        self.set_box_size("piece_0.vtp", 1, 0, 0, 0.5, 1, 0, 0, 0, 1)
+        self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "cell of the particles is tilted")
+        write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         self.set_box_size("piece_2.vtp", 0, 0, 3.1)
         for output, run, period in ("alone.ply", self.run_alone, "0,0,3.1"), ("ranks.ply", self.run_ranks, "auto"):
             self.good(run(PARTICLES if run == self.run_alone else pieces, self.path(output), *how, period))

@@ -200,6 +200,7 @@ class TestTemporal(unittest.TestCase):
         self.assertIn("Choose Time Scale 0.1, or", warning)  # The remedy comes first, as a window cuts lines off.
         self.assertGreater(self.farthest(numbered.GetOutput(), 0.05), 1e-3)
         self.assertEqual(self.told(numbered, 0.6), [])  # said once
+        self.assertAlmostEqual(numbered.GetMotionRatio(), 0.1003, 4)
         self.assertEqual(self.told(numbered, 0.5, TimeScale=0.1), [])
         self.assertLess(self.farthest(numbered.GetOutput(), 0.05), 3e-6)
         three = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1), 2.0: rotating(0.2)})

@@ -209,8 +209,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   }
   mcor_end_building(&context->cl);
   mcor_end_pool(&context->pool);
-  const mcor_status written = mcor_write_profile(context, statistics);
-  MCOR_THEN(status, written);
+  status = mcor_write_profile(context, statistics, status);
   const bool is_all = !far.solid;
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);

@@ -37,8 +37,7 @@ extern "C"
     MCOR_ELEMENT_UINT32,
     MCOR_ELEMENT_INT64,
     MCOR_ELEMENT_UINT64,
-    MCOR_ELEMENT_OTHER, /* no numbers: text, say; its data are never read */
-    MCOR_ELEMENT_COUNT
+    MCOR_ELEMENT_OTHER /* no numbers: text, say; its data are never read */
   } mcor_element;
 
   /* An array as its owner has it, borrowed until the mcor_found is freed. */

@@ -118,12 +118,12 @@ vtkSPHPeriod vtkSPHFindPeriodDistributed(
   for (const auto& theirs : ranks.Gather(std::make_pair(mine.Period, mine.Array)))
   {
     const vtkSPHPeriod found = { theirs.first, theirs.second };
-    if (first.Period.empty())
+    if (first.Array.empty())
     {
       first = found;
       firstRank = rank;
     }
-    else if (!found.Period.empty() && found.Period != first.Period && problem.empty())
+    else if (!found.Array.empty() && found.Period != first.Period && problem.empty())
     {
       problem = vtkSPHSay(MCOR_SAY(PERIODS_DIFFER), Describe(first).c_str(), firstRank,
         Describe(found).c_str(), rank);

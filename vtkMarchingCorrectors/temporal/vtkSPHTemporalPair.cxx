@@ -98,7 +98,7 @@ bool vtkSPHTemporalPair::Match(
   this->Warnings.clear();
   this->IdName.clear();
   this->VelocityName.clear();
-  this->Ratio = 0.0;
+  const double ratio = std::exchange(this->Ratio, 0.0);
   this->Choice = choice;
   const std::vector<std::uint64_t> before = std::exchange(this->Signature, {});
   this->Steps[0].Particles = first;
@@ -128,7 +128,11 @@ bool vtkSPHTemporalPair::Match(
   {
     vtkSPHSign(signature, number);
   }
-  if (signature != before)
+  if (signature == before)
+  {
+    this->Ratio = ratio;
+  }
+  else
   {
     if (!this->MatchNumbers())
     {

@@ -250,8 +250,10 @@ mcor_status mcor_copy(
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
-/* Appends what the call has cost to the profile, if there is one. */
-mcor_status mcor_write_profile(mcor_context* context, const mcor_statistics* statistics);
+/* Appends what the call has cost to the profile, if there is one. Returns the status of the call; or,
+ * if the call succeeded but its rows cannot be written, a failure. */
+mcor_status mcor_write_profile(
+  mcor_context* context, const mcor_statistics* statistics, mcor_status status);
 void mcor_close_profile(mcor_context* context);
 
 #endif

@@ -170,14 +170,15 @@ mcor_status mcor_end_profiled(
   return MCOR_OK;
 }
 
-mcor_status mcor_write_profile(mcor_context* context, const mcor_statistics* statistics)
+mcor_status mcor_write_profile(
+  mcor_context* context, const mcor_statistics* statistics, mcor_status status)
 {
   static const char* const names[] = { "launch", "wait", "write", "read", "copy", "map", "lock",
     "build" };
   struct mcor_profile* profile = context->cl.profile;
   if (!profile)
   {
-    return MCOR_OK;
+    return status;
   }
   if (context->cl.queue) /* NULL: no device could be started */
   {
@@ -199,5 +200,5 @@ mcor_status mcor_write_profile(mcor_context* context, const mcor_statistics* sta
   }
   profile->rows.count = 0;
   ++profile->call;
-  return mcor_flush_profile(context);
+  return status == MCOR_OK ? mcor_flush_profile(context) : status;
 }

@@ -96,15 +96,6 @@ def options_of(command):
             and (option in OWN or option in OF[command] or keyword_of(option) in names)]
 
 
-class Once(argparse.Action):
-    """Refuses an option that is given twice, as the program does."""
-
-    def __call__(self, parser, given, value, option_string=None):
-        if getattr(given, self.dest) is not None:
-            parser.error(f"{option_string} is given twice")
-        setattr(given, self.dest, value)
-
-
 def reader_of(option, argument):
     """Returns the function that reads the option's value; its error says what the value must be. argument: the value's name in the
     program's help."""
@@ -131,7 +122,7 @@ def add_option(parser, option, is_required):
         words.update(action="store_true")
     else:
         choices = WORDS.get(option) or (argument.split("|") if re.fullmatch(r"[a-z_]+(\|[a-z_]+)+", argument) else None)
-        words.update(choices=choices, metavar=None if choices else argument, required=is_required, action=Once,
+        words.update(choices=choices, metavar=None if choices else argument, required=is_required, action=_film.Once,
                      type=None if choices else reader_of(option, argument))
         if option in ("--only", "--walls", "--gauge"):
             words.update(action="append", default=None if is_required else [])
@@ -149,8 +140,8 @@ def make_parser(command):
         add_option(arrays if option.endswith("attributes") else parser, option, option == "--" + command)
     if command == "surface":
         _film.add_options(parser)
-        parser.add_argument("--spray", metavar="N", nargs="?", const=8, type=int, help="a film: particles of drops of fewer than N (8), "
-                            "and lone ones, are balls beside the surface")
+        parser.add_argument("--spray", metavar="N", nargs="?", const=8, type=int, action=_film.Once, help="a film: "
+                            "particles of drops of fewer than N (8), and lone ones, are balls beside the surface")
     return parser
 
 

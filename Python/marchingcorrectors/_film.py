@@ -31,9 +31,18 @@ OPTIONS = (("--fps", "N", float, "frames of a second of film (24)"),
            ("--time-step", "DT", float, "time between files (theirs, or 1)"))
 
 
+class Once(argparse.Action):
+    """Refuses an option that is given twice, as the program does."""
+
+    def __call__(self, parser, given, value, option_string=None):
+        if getattr(given, self.dest) is not None:
+            parser.error(f"{option_string} is given twice")
+        setattr(given, self.dest, value)
+
+
 def add_options(parser):
     for word, metavar, kind, text in OPTIONS:
-        parser.add_argument(word, metavar=metavar, type=kind, help="a film: " + text)
+        parser.add_argument(word, metavar=metavar, type=kind, action=Once, help="a film: " + text)
 
 
 def refuse_options(given):

@@ -163,7 +163,8 @@ class Command(Case):
         self.run_it("surface", "a.usdc", *FLUID, "--memory-limit", "1", status=1)
         self.assertRegex(self.said, "step 0 .*Choose a larger --cube-size")
         for words, sentence in ((["--screenshot", "a.png"], "--screenshot is for the program marching-correctors, not for surface; leave it out"),
-                                (["--iso", "1", "--iso", "2"], "--iso is given twice"), (["--cube-size", "abc"], "--cube-size: it must be a number, not 'abc'"),
+                                (["--iso", "1", "--iso", "2"], "--iso is given twice"), (["--fps", "24", "--fps", "25"], "--fps is given twice"),
+                                (["--cube-size", "abc"], "--cube-size: it must be a number, not 'abc'"),
                                 (["--attributes", "Mass", "--no-attributes"], "--no-attributes: not allowed with argument --attributes"),
                                 (["--within", "0,1;2"], "--within: it must be X0,X1,Y0,Y1,Z0,Z1, not '0,1;2'"),
                                 (["--slice", "z=0"], "--slice is for slice, not for surface"),

@@ -199,7 +199,7 @@ class Films(Case):
             self.assertEqual((mesh[:, 1] > 0.7).any(), len(there) < 5)
             self.assertTrue((np.linalg.norm(mesh, axis=1) < 0.2).any())
             self.assertEqual(len(np.unique(self.values(prims["surface"], "faceVertexIndices", 0))), len(mesh))
-        for words, sentence in ((["--scalar", "Idp", "--iso", "1"], "leave --scalar out"), (["--spray", "0"], "from 1 on")):
+        for words, sentence in ((["8", "--scalar", "Idp", "--iso", "1"], "leave --scalar out"), (["0"], "from 1 on")):
             self.assertRegex(self.run_it("surface", "in.vtp", "no.usdc", *WORDS, "--spray", *words, status=1), sentence)
 
     def test_lines(self):

@@ -78,8 +78,8 @@ private:
   void MoveHome();
   void FindParents(double isoValue);
   std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
-  std::vector<std::array<double, 3>> ListImages(
-    const std::array<double, 3>& point, const std::vector<std::array<double, 3>>& shifts) const;
+  std::array<double, 3> ImageOf(
+    const std::array<double, 3>& point, std::array<double, 3> shift) const;
   std::vector<Face> ListFaces(bool hasVolume, double isoValue) const;
   std::vector<vtkIdType> FindAround(
     const std::vector<std::array<double, 3>>& points, double isoValue) const;

@@ -211,19 +211,14 @@ std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume, double i
   return faces;
 }
 
-// Returns the images of a point: the point is moved into the period, then by each shift.
-std::vector<Triple> vtkSPHPieces::ListImages(
-  const Triple& point, const std::vector<Triple>& shifts) const
+// Returns an image of a point: the point is moved into the period, then by the shift.
+Triple vtkSPHPieces::ImageOf(const Triple& point, Triple shift) const
 {
-  std::vector<Triple> images = shifts;
-  for (Triple& image : images)
+  for (int a = 0; a < 3; ++a)
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      image[a] += point[a] - this->PeriodOf(point[a], a) * this->Length[a];
-    }
+    shift[a] += point[a] - this->PeriodOf(point[a], a) * this->Length[a];
   }
-  return images;
+  return shift;
 }
 
 std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
@@ -238,8 +233,9 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
       for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
       {
         vtkIdType innermost = -1;
-        for (const Triple& image : this->ListImages(points[i], shifts))
+        for (const Triple& shift : shifts)
         {
+          const Triple image = this->ImageOf(points[i], shift);
           Enclose(columns, this->Pieces, image, without.empty() ? -1 : without[i], innermost);
         }
         const bool isFluid = innermost >= 0 && this->Pieces[innermost].Volume > 0.0;
@@ -281,9 +277,9 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(
       double first = VTK_DOUBLE_MAX, at;
       int side = 0;
       vtkIdType piece = -1;
-      for (const Triple& image : this->ListImages(points[i], shifts))
+      for (const Triple& shift : shifts)
       {
-        const Triple point = turn(image.data());
+        const Triple point = turn(this->ImageOf(points[i], shift).data());
         for (const size_t f : columns.At(point[1], point[2]))
         {
           const int crossing = Crossing(columns.Faces[f], point, &at);

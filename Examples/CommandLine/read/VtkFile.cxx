@@ -421,16 +421,17 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
       return { array->GetComponent(0, 0) };
     }
   }
-  // If an XML file has field data at its end, a tag at its beginning has the least value of each
-  // array; for a single number, this is the number itself.
+  // If an XML file has field data at its end, a tag at its beginning has the least and the greatest
+  // value of each array; for a single finite number, both are the number itself.
   for (const std::string& name : names)
   {
     const std::size_t at = text.find("Name=\"" + name + "\"");
     const std::size_t low = text.find("RangeMin=\"", at), close = text.find('>', at);
-    const std::size_t begin = low + 10;
+    const std::string number =
+      low < close ? text.substr(low + 10, text.find('"', low + 10) - low - 10) : "";
     double value = 0.0;
-    if (low < close && close != std::string::npos &&
-      ParseNumber(text.substr(begin, text.find('"', begin) - begin), value))
+    if (text.find("RangeMax=\"" + number + '"', at) < close && close != std::string::npos &&
+      ParseNumber(number, value))
     {
       return { value };
     }

@@ -3,7 +3,7 @@
 /**
  * The group "In Use" of a filter's panel, folded at first. The group shows the filter's information
  * properties as they were after the last update; ParaView itself leaves out such properties. The group
- * must also have an ordinary property: ParaView creates the group's widget when it comes to that one.
+ * must also have an ordinary property: ParaView creates the group's widget when it comes to this property.
  *
  * As soon as something is changed on the panel, before Apply, the group shows what the next update
  * would find (the properties that begin with Next, if the filter has them). The list of iso values

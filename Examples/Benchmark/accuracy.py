@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the guide's tables of how near the results for a known flow or body are to the truth.
+"""Makes the guide's tables of errors: how far the results for known flows and bodies are from the truth.
 
     accuracy.py [walls] [volumes] [curvature] [attributes] [corrected]
 

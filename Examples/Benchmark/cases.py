@@ -20,7 +20,7 @@ def medians(rows):
 def adaptive(benchmark):
     """Measures adaptive cubes. With given particles, prints for uniform and adaptive cubes in turn: the triangles, the
     seconds of a process's second surface, and the processor seconds by which two surfaces take longer than one. Without
-    given particles, times whole processes with adaptive cubes, for smoothing lengths 1:10, 1:100 and 1:1000."""
+    given particles, times whole processes with adaptive cubes, for smoothing lengths that vary by 1:10, 1:100 and 1:1000."""
     out, program = benchmark.report, benchmark.program
     if not benchmark.files:
         options = ["--cubes", "adaptive", *(benchmark.more or ["--free-surface"])]
@@ -143,7 +143,7 @@ def make_image(bounds, *dimensions):
 
 
 def make_probe(particles, image, *arrays, keep=True):
-    """Returns a vtkSPHProbe, which has not run yet, for these arrays, or for all arrays of the particles."""
+    """Returns a vtkSPHProbe that has not run yet. It probes the arrays `arrays`; without names, all arrays of the particles."""
     from marchingcorrectors import vtkSPHProbe
     probe = vtkSPHProbe()
     probe.SetInputData(image)
@@ -216,9 +216,9 @@ class Watch:
             self.filter.AbortExecuteOn()
 
     def run(self, stop_at=None):
-        """Returns three results. The first is the seconds of the whole run. The second is the longest gap between reports, by the clock and by
-        processors, each with the phase in which it begins. The third is the seconds from report number stop_at, which cancels the run, to
-        the end of the run; 0 if the run was not cancelled."""
+        """Returns the seconds of the whole run; two gaps; and the seconds from report number stop_at, which cancels the run, to the end of
+        the run (0: not cancelled). The gaps are the longest one between reports by the clock, and the longest one in processor seconds,
+        each as (seconds, the phase in which the gap begins)."""
         self.reports, self.stop_at = [], stop_at
         self.filter.AbortExecuteOff()
         self.filter.Modified()
@@ -233,7 +233,7 @@ class Watch:
 
 def cancel(benchmark):
     """Measures how long a run goes on after it is cancelled. A run stops at its next report of progress. All kernels are
-    compiled. For each kind of run, prints the longest time without a report, by the clock and in processor seconds of all
+    compiled beforehand. For each kind of run, prints the longest time without a report, by the clock and in processor seconds of all
     threads, and the phase in which it began; this time is the least over several runs. Then prints how long a run went on after
     the report that cancelled it: the longest time over 8 such reports."""
     from marchingcorrectors import vtkMarchingCorrectors

@@ -24,7 +24,7 @@ import numpy
 
 
 def make_tank(count):
-    """Makes a jittered lattice below waves. Returns positions, [n, 3]; a smooth scalar, [n]; h, mass and density."""
+    """Makes a jittered lattice below waves. Returns positions, [n, 3]; a smooth scalar, [n]; and {name: [n]} of h, mass and density."""
     spacing = (3 * 1.5 * 0.55 / count) ** (1 / 3)
     axes = [numpy.arange(spacing / 2, side, spacing) for side in (3.0, 1.5, 1.0)]
     x = numpy.stack(numpy.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)

@@ -25,7 +25,7 @@ CUBE_FACTOR = 0.5
 THRESHOLD = 0.5  # The free surface is where the weight sum has this value.
 ENOUGH_SECONDS = 120.0  # After this many seconds a competitor is not run again.
 
-# Each set has arguments for make_particles.py, and options that tell the program about the particles.
+# {set: (its name in make_particles.py, make_particles.py's other arguments, options that tell the program about the particles)}
 SETS = {
     # Particles have 70 neighbours and constant h, for comparisons with other software.
     "tank": ("tank", (), ()),
@@ -153,8 +153,8 @@ class Program:
             "bytes": found["peak_resident_bytes"]}
 
     def start(self, path, options, repeat=1, environment=None, output=None, before=()):
-        """Runs one process, and ends the benchmark if the process fails. Returns the report of the process, or None if repeat is 0, and the
-        seconds from its start to its end, by the clock and of processors."""
+        """Runs one process, and ends the benchmark if the process fails. Returns the process's report (None if repeat is 0), its seconds by
+        the clock, and its processor seconds. before: words in front of the command."""
         report = self.folder / "statistics.json"
         report.unlink(missing_ok=True)
         statistics_of = ["--repeat", str(repeat), "--stats", report] if repeat else []
@@ -194,7 +194,7 @@ def exclude_others(filter_, particles, *kept):
 
 
 def interpolator(particles, image, h, dimension, *kept):
-    """Returns a vtkSPHInterpolator for the arrays `kept`, which has not run yet."""
+    """Returns a vtkSPHInterpolator that has not run yet. It interpolates the arrays `kept`."""
     kernel = vtk.vtkSPHCubicKernel()
     kernel.SetSpatialStep(h)
     kernel.SetDimension(dimension)
@@ -211,7 +211,7 @@ def interpolator(particles, image, h, dimension, *kept):
 
 
 def run_vtk(path, iso="0", dimension="3", length=None):
-    """Runs vtkSPHInterpolator of one scalar on an image of the particles' bounds, then vtkFlyingEdges."""
+    """Contours Swirl by VTK: vtkSPHInterpolator on an image around the particles, then vtkFlyingEdges. length: h; None: the largest h."""
     particles, dimension = read(path), int(dimension)
     h = float(length) if length else particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
     image = lattice(particles, CUBE_FACTOR * h, dimension)

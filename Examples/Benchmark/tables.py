@@ -25,7 +25,7 @@ def competitor_row(count, name, theirs, ours):
 
 
 def compare(benchmark, name, run_ours):
-    """Writes one table: run_ours(count) against competitor `name` at every size."""
+    """Writes a table: run_ours(count) against the competitor `name` at every size. Returns both results of each size."""
     out, rows, notes, results, smaller = benchmark.report, [], [], [], None
     for count in benchmark.sizes:
         ours = need_surface(run_ours(count), f"tank of {count}")

@@ -35,7 +35,7 @@ def list_steps(names, time_step):
 
 
 def list_arrays(particles):
-    """Returns the names of real arrays with one number or a vector for each particle, which mesh attributes can hold."""
+    """Returns the names of floating-point arrays with one number or a vector for each particle; mesh attributes can hold these arrays."""
     return [name for name, array in particles.arrays.items() if array.dtype.kind == "f" and array.shape[1:] in ((), (3,))]
 
 

@@ -146,7 +146,7 @@ def save(renderers, size, path):
 
 
 def speed_colors():
-    """Returns the colours: deep blue, cyan, white, for slow water to spray of 2.5 m/s."""
+    """Returns a table of colours by speed: from dark blue at rest over light blue to white from 2.5 m/s on."""
     table = vtkLookupTable()
     table.SetNumberOfTableValues(256)
     table.SetTableRange(0.0, 2.5)

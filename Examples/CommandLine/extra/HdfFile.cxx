@@ -185,7 +185,8 @@ public:
     return array;
   }
 
-  /// Reads all values of an array as ArrayT's type. Throws if this type is whole, but the array is not.
+  /// Reads all values of an array as values of ArrayT. Throws if ArrayT holds integers, but the array in the
+  /// file holds floating-point numbers.
   template <typename ArrayT>
   std::vector<typename ArrayT::ValueType> Values(const std::string& name) const
   {

@@ -172,7 +172,6 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
   renderer->ResetCameraClippingRange();
 }
 
-/// The window, and what is shown in it.
 class Scene
 {
 public:

@@ -87,7 +87,6 @@ struct Rule
 };
 #define IF(...) [](const Job& j) -> bool { return __VA_ARGS__; }
 
-/// Whether the output has this ending.
 bool IsTo(const Job& j, const char* ending)
 {
   return EndsWith(j.Output, ending);
@@ -98,7 +97,8 @@ bool IsOfSteps(const Job& j)
   return IsCollectionFile(j.Output) || HasStepNumber(j.Output);
 }
 
-/// Whether there are several inputs, or the input or the output lists steps (.pvd) or numbers them (%04d).
+/// Whether there are several inputs, the input lists steps (.pvd, .series), or the output lists steps (.pvd)
+/// or has the number of a step in its name (%04d).
 bool HasSteps(const Job& j)
 {
   return j.Inputs.size() > 1 || IsOfSteps(j) ||

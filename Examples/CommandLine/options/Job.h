@@ -37,7 +37,6 @@ enum Modes : unsigned
   USUAL = 256 ///< marks an option that most people need
 };
 
-/// Settings of pictures.
 struct PictureOptions
 {
   std::string File;               ///< empty: no picture; with %04d: one for each step of a film

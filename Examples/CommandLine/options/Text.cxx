@@ -269,8 +269,8 @@ int ToCount(Text option, Text text, int smallest, int largest)
 
 std::string NearestOf(Text text, const std::vector<std::string>& names)
 {
-  // Compares in small letters, without - and _. A name that begins with the text is as near as a
-  // name with one wrong letter.
+  // Compares in small letters, without - and _. If the name begins with the text, or the text with the
+  // name (four letters or more), the name is as near as one with one wrong letter.
   const auto lettersOf = [](std::string word)
   {
     word.erase(

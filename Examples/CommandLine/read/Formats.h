@@ -156,8 +156,8 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, ch
 /// names.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
-/// Finds the columns of positions by their names; none if no name fits. Fails if only some of x, y
-/// and z exist, unless two of them are the whole table.
+/// Finds the columns of positions by their names; none if no name fits. Fails if one or two of the three
+/// are missing, unless the table has no other columns.
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
 /// Makes particles from a table. positions: the columns of the positions.

@@ -68,8 +68,8 @@ struct ParticleSets
     false; ///< the files are parts of one set, which may hold copies of other parts' particles
 };
 
-/// Reads the files that belong to process `rank` of `count`. The processes share the files, and the
-/// pieces that files list, in order.
+/// Reads the files that belong to process `rank` of `count`: each process gets successive files. A file
+/// that lists pieces stands for these pieces.
 ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
 /// Joins the sets to one, with the arrays that all of them have; there may be no particles. Leaves out
@@ -84,8 +84,8 @@ extern const char* const WallArrayName;
 
 /// Returns the fluid, followed by the walls; the fluid itself if it is empty or `walls` is null. Keeps
 /// the fluid's arrays of numbers. Throws if one of them has the name WallArrayName. If walls lack an
-/// array, they get the fluid's median: only the smoothing length and the arrays that give volumes
-/// matter for solids, which take part in no field.
+/// array, they get the fluid's median: for solids, only the smoothing length and the arrays that give
+/// volumes matter.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 
 /// Returns the period for "--periodic auto". Fails with the problem, or because no period was found.

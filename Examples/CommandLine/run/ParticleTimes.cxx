@@ -41,7 +41,7 @@ Steps::const_iterator FindStep(const Steps& steps, double time)
     [](const ParticleTimes::Step& step, double t) { return step.Time < t; });
 }
 
-/// Lists the steps of a .pvd file.
+/// Lists the steps of a .pvd or .series file.
 Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
 {
   Steps steps;

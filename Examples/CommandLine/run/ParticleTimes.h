@@ -85,8 +85,8 @@ private:
 /// Whether a warning tells of gauges or sections outside of all fluid.
 bool TellsOfDryPlaces(const std::string& warning);
 
-/// Writes a table that grows with each time; with --gauge-grid, only finish() writes. Returns false if one
-/// of several steps failed; throws if the only one did. addRows() appends a moment's rows to the text; only
+/// Writes a table that grows with each time; with --gauge-grid, only finish() writes. Returns false if some
+/// steps failed, but not all; throws if all failed. addRows() appends a moment's rows to the text; only
 /// the first process' text is written. The message at the end names `what`, then what finish() returns.
 bool MakeTable(Sharing& sharing, const std::string& what,
   const std::function<void(ParticleTimes::Moment& moment, std::string& text)>& addRows,

@@ -32,8 +32,8 @@ def lattice(n=10):
 
 
 def drop_at(time, n=10, numbers=None, velocity=2.0):
-    """Returns the positions and arrays of the block at a time: it falls and turns around the z axis. `numbers` names the particles that are
-    in the file, in their order."""
+    """Returns the positions and arrays of the block at a time. The block falls, and turns around the z axis with the angular velocity
+    `velocity`. numbers: the numbers of the particles to return, in this order."""
     points, arrays = lattice(n)
     angle = velocity * time
     c, s = math.cos(angle), math.sin(angle)
@@ -171,7 +171,7 @@ def all_forms(points, arrays):
 
 
 def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
-    """Writes one of the `count` files of a GADGET snapshot: gas particles with the chosen numbers, and three stars."""
+    """Writes one of the `count` files of a GADGET snapshot: the gas particles `chosen` (numbers), and three stars. named: in format 2."""
     def record(data):
         return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
 

@@ -70,8 +70,8 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """A mode as the first word changes no output. If an option is missing that the mode needs, a sentence names the option. A surface
-        without a scalar is the free surface."""
+        """A mode as the first word changes no output. If the command line lacks what the mode needs, a sentence says what. Without a scalar,
+        the mode `surface` makes the free surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
         self.assertEqual(*((self.directory / name).read_bytes() for name in ("a.vti", "b.vti")))

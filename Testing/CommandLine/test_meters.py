@@ -47,8 +47,8 @@ class Meter(CommandLineTest):
         self.assertEqual(len(lines), 2)
 
     def test_times(self):
-        """A file's time is used, also if there is only one file. Files without times are steps of dt if they hold the same dt, else steps
-        of 1; a warning says so."""
+        """A file's time is used, also if there is only one file. Several files without times are dt apart if all store the same dt, else 1
+        apart; a warning says so."""
         for step in range(3):
             for name in ("step", "timed"):
                 files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))
@@ -324,7 +324,7 @@ class Volumes(CommandLineTest):
 
     def test_spray(self):
         """A lone particle has a surface only if its volume is computed or large, or the iso value low. A run tells how many particles
-        would have none alone."""
+        would have no surface if each were alone."""
         points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
         files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points), "One": [DX ** 3] * (len(points) - 1) + [10 * DX ** 3]})
         given = ("--smoothing-length", "0.13")

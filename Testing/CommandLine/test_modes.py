@@ -36,8 +36,8 @@ PICTURE = {"--screenshot": "p.png"}
 
 
 class Trial(collections.namedtuple("Trial", "value context extra output inputs", defaults=("", {}, {}, None, None))):
-    """How an option is tried. value: the option's value. context: options that are there with and without it. extra: options that it needs,
-    or None for an option that it replaces. output, inputs: other files than the mode's."""
+    """How an option is tried. value: the option's value. context: {other option: value} of both runs, with the option and without. extra:
+    {other option: value} of the run with the option; None takes the other option away. output, inputs: files in place of the mode's."""
 
 
 # How each option is tried. In each mode, options of `context` that do not act in the mode are left out.

@@ -39,8 +39,8 @@ class Walls(CommandLineTest):
                          self.surface(*free, "--fluid", "Kind=0"))
 
     def test_several_bodies(self):
-        """Walls may come in several formats and in any order. Arrays that walls lack get the fluid's median. Of these only the
-        sizes matter, which are the same for all particles."""
+        """Walls may come in several formats and in any order. Arrays that walls lack get the fluid's median. Of these arrays only the
+        smoothing length, the mass and the density matter here, and each is the same for all particles."""
         wanted = self.surface(*HOW, "--fluid", "Kind=0")
         lacking = ["Density", "Velocity", "SmoothingLength", "Mass", "Radius"]
         low = self.write("Left.vtu", lambda kind, point: kind == 1 and point[1] < 0, lacking[:2])

@@ -423,13 +423,13 @@ class Program(unittest.TestCase):
                 self.assertEqual(self.text(name), "old", name)
 
     def test_own_disks(self):
-        """Each process checks only the files that it writes, because processes may have disks of their own."""
+        """Each process but the first checks only the files that it writes, because processes may have disks of their own."""
         enter = f"mkdir {self.folder.name}/$rank; cd {self.folder.name}/$rank; test $rank = 0 || mkdir out_0.vtp;"
         self.good(self.run_ranks(os.path.abspath(PARTICLES), "out.pvtp", "--free-surface", first=enter))
         self.assertTrue(os.path.isfile(self.path("1/out_1.vtp")))
 
     def test_files_of_others(self):
-        """No process overwrites a piece of the particles, nor a piece of the surface."""
+        """A run is refused if an output would overwrite a piece of the particles or another output. No file changes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 2)
         before = {name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}
         self.assertIn("piece_1.vtp", before)

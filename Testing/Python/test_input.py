@@ -163,7 +163,7 @@ class TestKinds(unittest.TestCase):
         self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # The field is nowhere half the smoothing length.
 
     def test_points(self):
-        """Coordinates may be of an integer type. The surface's points have the type of the particles' points."""
+        """Coordinates may be of an integer type. By default the surface's points have the type of the particles' points."""
         whole, surfaces = vtkPoints(), []
         whole.SetDataTypeToInt()
         for place in numpy.rint(lattice(10, 10, 10) / SPACING):

@@ -129,7 +129,7 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual([port.get("index") for port in proxies["SPHComponents"].findall("OutputPort")], ["0", "1"])
 
     def test_information(self):
-        """Properties that show the last update have the types and sizes of their getters."""
+        """Properties that only show values have the types and sizes of their getters."""
         empty = marchingcorrectors.vtkMarchingCorrectors()
         information = [e for e in self.main if e.get("information_only")]
         self.assertEqual(len(information), 22)
@@ -159,7 +159,7 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(get(made, command), value, where)
 
     def test_limits(self):
-        """Enumerations and ranges in the XML end where the filters clamp values. The Python package takes its limits from the XML."""
+        """Enumerations and integer ranges in the XML end where the filters clamp values. The Python package takes its limits from the XML."""
         for kind, command, number, element in self.scalars():
             if number is not int or element.find("BooleanDomain") is not None:
                 continue

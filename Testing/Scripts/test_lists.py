@@ -13,8 +13,8 @@ from pathlib import Path
 SOURCES = Path(sys.argv.pop(1))
 CORE = SOURCES / "vtkMarchingCorrectors" / "core"
 GUIDE = SOURCES / "Documentation" / "Guide"
-# The core's default of this option is auto, which is 0 for the free surface. In the filters, Solids says whether the
-# surface ends at walls.
+# The core's default is auto (-2): 0 for the free surface, else measured (-1). The filters' default is -1, because their property
+# Solids says whether the surface ends at walls.
 DIFFERENT = {"WallShare": "-1"}
 
 

@@ -5,7 +5,7 @@
     build_wheel.py SOURCES FOLDER KEPT AHEAD
 
 FOLDER gets dist/ (the wheel) and venv/. KEPT: the folder of kernels that the build of these tests has compiled already. AHEAD: the
-MCOR_AHEAD of this build.
+value of CMake's MCOR_AHEAD in this build.
 Status 77: there is no venv module, or PyPI is out of reach.
 """
 import os

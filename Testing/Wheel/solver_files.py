@@ -16,7 +16,7 @@ WALL = X[:, 2] < -0.5
 
 
 def write_bi4(path, order="<", wide=False, double=True, period=0, time=0.75, positions=X):
-    """Writes a .bi4 file in the layout that DualSPHysics' sources JBinaryData.h and .cpp describe."""
+    """Writes a .bi4 file as DualSPHysics' JBinaryData.cpp does. wide: counts of 64 bits. double: positions in double precision."""
     def pack(form, *values):
         return struct.pack(order + form, *values)
 

@@ -34,7 +34,7 @@ def lattice(*sides):
 
 
 def write(folder, name, arrays, fields=(), positions=None, sides=9, kind=np.float32):
-    """Writes a file of particles, by default moved a little from a lattice. arrays: values, or a function of the positions."""
+    """Writes a file of particles, by default moved a little from a lattice. arrays: {name: one value, or a function of the positions}."""
     x = lattice(*[sides] * 3) if positions is None else positions
     x = (x + np.random.default_rng(2).normal(0, 0.004, x.shape) * (positions is None)).astype(kind)
     particles = pyvista.PolyData(x)

@@ -54,7 +54,7 @@ class Case(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def run_it(self, system=True, before="", after="", device=None, **environment):
-        """Returns the lines of the output. system: whether the system's drivers are found."""
+        """Runs RUN, and returns the lines that it prints. system: whether the system's drivers are found. before, after: more code in RUN."""
         variables = {**os.environ, **environment}
         if not system:
             variables["OCL_ICD_VENDORS"] = self.folder.name  # There is no driver in this folder.
@@ -91,8 +91,7 @@ class Usual(Case):
         self.assertIn("built in: this CPU", sentence)
 
     def test_off_the_path(self):
-        """The package works in a Python that does not look for packages in its folder, as in ParaView, which loads the
-        plugin's file from there."""
+        """The package works if its folder is not on Python's path, as in ParaView, which loads the plugin by the name of its file."""
         before = "import sys; sys.path = [p for p in sys.path if not p.endswith('site-packages')]"
         self.assertIn("built in: this CPU", self.run_it(system=False, before=before)[1])
 

@@ -172,7 +172,7 @@ def write_data(path, random, style="atomic"):
 
 
 def write_h5part(path, random, steps):
-    """Writes an H5Part file as SPH-EXA does. The order of its steps is not the order of their names. Returns the
+    """Writes an H5Part file as SPH-EXA does. From eleven steps on, the steps do not have their names' alphabetical order. Returns the
     columns of each step."""
     made = []
     with h5py.File(path, "w") as file:

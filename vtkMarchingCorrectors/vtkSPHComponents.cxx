@@ -80,8 +80,8 @@ vtkSmartPointer<vtkIdTypeArray> AddIds(
 }
 
 /**
- * A sum whose bits do not depend on the order of its numbers. All numbers must be announced
- * first: they are rounded to a unit in which the sum is exact.
+ * A sum whose bits do not depend on the order of its numbers. Expect() must get all numbers before
+ * Add() gets the first one: Add() rounds to a unit in which the sum is exact.
  */
 class OrderlessSum
 {

@@ -11,8 +11,8 @@
  * Sections come from the Add...() methods and from the cells of the second input: polygons, with
  * normals by the right-hand rule, or outwards if they are a closed surface; lines, if particles lie
  * in a plane. Cells with the same entry in the cell array "Name" are one section; without such an
- * array, all cells are one. Without any section and without a second input, the disc of Origin,
- * Normal and Radius is used.
+ * array, all cells are one section. Without any section and without a second input, the disc of
+ * Origin, Normal and Radius is used.
  *
  * In two dimensions a section is its line in the plane of the particles, and areas are lengths.
  *

@@ -50,7 +50,7 @@ public:
   /** The weight sum at which the fluid ends, above 0. 0.5 by default. */
   vtkSPHValueMacro(Level, double, 0.5);
 
-  /** The time in the table if the input has none. 0 by default. */
+  /** The time in the table if neither the input nor the pipeline's request has a time. 0 by default. */
   vtkSPHValueMacro(Time, double, 0.0);
 
 protected:

@@ -173,7 +173,7 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
 }
 
 // Origin and spacing come with the data. Dimensions that are not set follow the shape of Bounds, or
-// of the present fluid's box: cells are about cubes, in one layer if the box is flat.
+// of the present fluid's box: cells are about cubes. If the box is flat, there is one layer of points.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -134,9 +134,9 @@ public:
   /** Returns the filter's description of the particles, completed as vtkSPHChoose() does. */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
-   * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if there is no
-   * fluid, or if a setting has no effect. Returns false, after an error, if an array is not usable.
-   * Does nothing if no process has particles.
+   * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if a setting
+   * has no effect, or if there is no fluid; consequence: what the warning says to follow from this.
+   * Returns false, after an error, if an array is not usable. Does nothing without particles.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /**

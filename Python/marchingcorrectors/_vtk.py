@@ -67,7 +67,7 @@ def varies(array, on_surface):
 
 
 def find_period(points):
-    """Returns the six bounds in the field data, or None; and the nine numbers of a tilted cell, or None."""
+    """Returns two values: the six bounds of the period that field data tell, or None; the nine numbers of a tilted cell, or None."""
     found, period, cell = [], (ctypes.c_double * 6)(), None
     for array in abstract_arrays_of(points.GetFieldData()):
         name = as_bytes(name_of(array))
@@ -141,8 +141,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns the vtkCellArray with the vertex cells of poly data, or with all cells of an unstructured grid, else None; and the
-    type of each cell. The types of the vtkCellArray's own cells come first; other cells may have 0."""
+    """Returns two values: the vtkCellArray with the vertex cells of poly data, or with all cells of an unstructured grid, else None;
+    the type of each cell. The types of the vtkCellArray's own cells come first; other cells may have 0."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
@@ -167,7 +167,7 @@ def add_values(data, count, chosen, made):
 
 def take_vertices(data, have=None):
     """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++ does, but as a vtkPolyData
-    without cells. Returns the data set itself if nothing has to change."""
+    without cells. Returns the data set itself if nothing has to change. have: whether any block has vertices; None: looks for one."""
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):

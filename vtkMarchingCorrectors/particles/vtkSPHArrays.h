@@ -187,7 +187,7 @@ enum vtkSPHHow
 /** Adds the costs of one call of the core to the costs of earlier calls in `run`. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
-/** Finds the point array with the most usual name for this quantity; nullptr: there is none. */
+/** Finds the point array with the most usual name for this quantity, with so many components; nullptr: there is none. */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
 /** Lists VTK arrays for the core, and keeps the arrays alive. Copies arrays whose values the core cannot read in place. */

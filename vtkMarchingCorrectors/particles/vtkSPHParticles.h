@@ -49,7 +49,7 @@ struct vtkSPHWanted
   bool FreeSurface = false, HasIsoValues = false, Filled = false;
 };
 
-/** Returns, for each particle, whether the choice keeps it; empty: all are kept, also if the array of a condition is missing. */
+/** Returns, for each particle, whether the choice keeps it. An empty list: all are kept, or the array of a condition is missing. */
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**

@@ -116,9 +116,9 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 }
 
 /**
- * Numbers the distinct keys of all ranks in order, and returns the numbers of this rank's keys.
- * keys: must ascend. areCells: each key takes as many successive numbers as its last part says, one
- * for each triangle of the cell. total: the count of numbers. Each rank sorts a range of the keys.
+ * Numbers the distinct keys of all ranks in order. Returns the numbers of this rank's keys in an
+ * array called `name`. keys: must ascend. areCells: a key takes one number for each triangle of its
+ * cell; the key's last part counts the triangles. total: how many numbers all keys take.
  */
 vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   vtkSPHRanks& ranks, const Keys& keys, bool areCells, const char* name, vtkIdType& total)

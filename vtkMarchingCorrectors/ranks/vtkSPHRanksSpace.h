@@ -47,8 +47,8 @@ public:
   void Enter(double at[3]) const;
 
   /**
-   * Divides the work evenly. input: this rank's particles. work: how much work each particle costs,
-   * or 0 if no rank needs it. places: further work of this rank. parts: how many ranks get a box.
+   * Divides the work evenly. input: this rank's particles. work: the work of each particle, or 0 if
+   * no rank needs the particle. places: further work of this rank. parts: how many ranks get a box.
    * Returns, for each rank, the particles that the rank needs: particles whose supports, or images of
    * supports, reach the rank's box, and particles that may be their neighbours. Collective.
    */

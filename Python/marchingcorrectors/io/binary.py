@@ -41,7 +41,7 @@ class RawArray(NamedTuple):
         return self._replace(begin=self.begin + begin * width, count=count)
 
 
-# GADGET: one file or several, of Fortran's records. Each record stands between two copies of its number of bytes. The first record is a
+# GADGET: one file or several, which consist of Fortran's records. A record stands between two copies of its number of bytes. The first is a
 # header of 256 bytes. Each other record is an array: of all types of particles in order, of the types that have no mass in the header, or
 # of gas. In format 2, a record with the array's name comes before each record; in format 1, the order of the arrays tells their names.
 HEADER = "6i6d2d2i6I2i4d"

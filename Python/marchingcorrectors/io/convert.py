@@ -115,7 +115,7 @@ def vtp_bytes(particles, mark=b""):
 
 
 def convert(inputs, output):
-    """Writes files as one .vtp, or as a .pvd with one .vtp for each of their steps, at the files' times (else 0, 1, ...)."""
+    """Writes files as one .vtp, with the first step, or as a .pvd with one .vtp for each step, at the files' times (else 0, 1, ...)."""
     output = Path(output)
     if output.suffix.lower() not in (".vtp", ".pvd"):
         raise FileError(f"'{output}' must end in .vtp or .pvd.")

@@ -111,8 +111,8 @@ def read_box(file, words, lines, at):
 
 
 def read_lammps(path, step):
-    """Reads the items of a dump: a line with the name, then lines with the content. A step's time is TIME, else
-    TIMESTEP."""
+    """Reads the items of a dump. An item is a line with its name, then lines with its content. A step's time is in the item
+    TIME, else in TIMESTEP."""
     lines, at, steps, head = lines_of(path), 0, [], {}
     while at < len(lines):
         words, at = lines[at].split(), at + 1

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plots a column of a table of gauges or fluxes over time, a line for each.
+"""Plots a column of a table of gauges or fluxes over time, with a line for each gauge or section.
 
     plot_table.py TABLE.csv COLUMN OUT.png
 """

@@ -27,7 +27,7 @@ def to_time(settings, scene, frame):
 
 
 def find_step(settings, scene, frame):
-    """Returns the last step that is not later than the frame; if all are later, the first one."""
+    """Returns the last step that is not later than the frame's time; if all steps are later, the first one."""
     time, found = to_time(settings, scene, frame), settings.steps[0]
     margin = 1e-4 * settings.speed * scene.render.fps_base / scene.render.fps  # Times in files may have few digits.
     for step in settings.steps:
@@ -45,8 +45,7 @@ def words_of(settings):
 
 
 def refresh(thing, scene):
-    """Makes the mesh of the scene's frame, unless the object has it already. Returns the error or the
-    warnings as text, or ""."""
+    """Makes the mesh of the step at the scene's frame, unless the object has it already. Returns the error or the warnings as text, or ""."""
     settings = thing.sph
     if not len(settings.steps):
         return ""
@@ -69,7 +68,7 @@ def refresh(thing, scene):
 
 
 def fill_mesh(mesh, surface, speed):
-    """Replaces the points, faces and attributes, but keeps the materials."""
+    """Replaces the points, faces and attributes, but keeps the materials. speed: seconds of the simulation in a second of the scene."""
     mesh.clear_geometry()
     if surface is None or not len(surface.points):
         mesh.update()

@@ -27,7 +27,7 @@ def advanced(points, time):
 
 
 def fill(particles, points, numbers):
-    """Hands points and arrays over to an empty vtkPointSet."""
+    """Gives an empty vtkPointSet the points and their arrays. numbers: the particles' ids."""
     particles.SetPoints(vtkPoints())
     particles.GetPoints().SetData(numpy_to_vtk(points, deep=1))
     constant = np.ones(len(points))

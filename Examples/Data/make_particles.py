@@ -312,7 +312,7 @@ def vortex_rings(count, keep_all=False, threshold=1e-3):
 
 
 def poly_data(positions, arrays):
-    """Returns vtkPolyData. positions: [n, 3]; arrays: by name, of n values or vectors. Types stay as they are."""
+    """Returns vtkPolyData. positions: [n, 3]; arrays: {name: n values, or n vectors}. Types stay as they are."""
     particles = vtk.vtkPolyData()
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(positions, deep=1))

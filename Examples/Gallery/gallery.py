@@ -115,7 +115,7 @@ def panel(actors, text, place, size, camera, up):
 
 
 def in_tank(reader, panels, camera, place=(12, 370), size=18):
-    """Makes panels of (text, actors...) with the particles' outline."""
+    """Makes panels, given as (text, actors...), each with the outline of the particles' bounds."""
     outline = vtkOutlineSource()
     outline.SetBounds(reader.GetOutput().GetBounds())
     renderers = []

@@ -120,7 +120,7 @@ def write_vtu(path, points, arrays, cells=None):
 
 def legacy(points, arrays=(), form="ASCII", fields=0, before="", cells=""):
     """Returns the bytes of a legacy file. The last `fields` arrays are stored in a field, the other ones as scalars and vectors. Binary
-    numbers are big endian."""
+    numbers are big endian. before, cells: text before and after the points."""
     write = (lambda values: text_of(values).encode()) if form == "ASCII" else (lambda values: packed(values, ">"))
     parts = [f"# vtk DataFile Version 3.0\nparticles\n{form}\nDATASET POLYDATA\n{before}POINTS {len(points)} double\n".encode(),
              write(points), f"\n{cells}".encode()]

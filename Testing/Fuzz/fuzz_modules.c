@@ -138,8 +138,8 @@ static int fuzz_gather(void* user, const void* records, int64_t count, size_t wi
   return fuzz_exchange(user);
 }
 
-/* Checks that a single rank measures and extracts the same as a run without ranks. Without particles it can measure
- * nothing. */
+/* Checks that a single rank extracts the same as a run without ranks. The rank fails if there are no particles, and
+ * is cancelled if its callback `failing` fails. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);

@@ -169,8 +169,8 @@ class Films(Case):
         self.assertRegex(self.run_it("convert", "film_0000.vtp", "film.pvd", "film_0000.vtp", status=1), "would overwrite")
 
     def test_spray(self):
-        """Particles in drops of fewer than N particles (--spray N; 8), and particles without a surface, become balls of spray. Larger
-        drops and a bubble stay in the surface."""
+        """Particles in drops of fewer than N particles (--spray N, by default 8), and particles without a surface, become balls of
+        spray. Larger drops and a bubble stay in the surface."""
         points = drop()[0]
         points = points[np.linalg.norm(points, axis=1) > 0.15]
         small = np.array([[0, 0, 0], [DX, 0, 0], [0, DX, 0]]) + [0.9, 0, 0]

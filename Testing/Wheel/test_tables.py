@@ -187,7 +187,7 @@ def write_h5part(path, random, steps):
 
 
 def write_series(path, random):
-    """Writes a .series file as ParaView does."""
+    """Writes a .series file as ParaView does, and the two tables that it lists."""
     write_csv(path.with_name("a.csv"), random)
     write_columns(path.with_name("b.txt"), random)
     path.write_text('{"file-series-version": "1.0", "files": [{"name": "b.txt", "time": 0.5}, {"name": "a.csv", "time": 0}]}')

@@ -37,7 +37,7 @@ namespace
 
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// Writes an elevation map: the array Level is the height of the surface.
+/// Writes the readings of a grid of gauges as an image with the arrays Level (z of the surface), Depth and Crossings.
 void WriteGrid(const Job& job, vtkTable* table)
 {
   const std::vector<double>& n = job.Grid;
@@ -62,9 +62,9 @@ void WriteGrid(const Job& job, vtkTable* table)
   WriteDataSet(job.Output, image);
 }
 
-/// Adds a column to the table of fluxes: what has flowed since the first time, by the trapezoidal
-/// rule. passed: the time since the last step; before: each section's flux at the last step; sums:
-/// each section's integral so far.
+/// Adds the column `name` (volume or mass) to the table of fluxes: how much has flowed since the first time, by the
+/// trapezoidal rule. passed: the time since the last step; before: each section's flux at the last step; sums: each
+/// section's integral so far.
 void AddIntegrals(vtkTable* table, const std::string& name, double passed,
   std::vector<double>& before, std::vector<double>& sums)
 {

@@ -25,7 +25,8 @@ typedef struct mcor_watch
   double support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
-  double normal[3];                          /* of the watched particles' plane; 0: none */
+  bool has_normal;                           /* whether the watched particles lie in a plane */
+  double normal[3];
 } mcor_watch;
 
 /* ---- A plane that is tilted in space ---- */
@@ -35,12 +36,12 @@ typedef struct mcor_watch
 #define MCOR_THIN 0.1
 #define MCOR_BROAD 8
 
-/* Sets the normal of the plane in which all watched particles lie; it stays 0 if they lie in none.
- * The plane goes through the first particle, the particle farthest from the first, and the particle
- * farthest from the line between these two. */
+/* Finds the normal of the plane in which all watched particles lie, if they lie in one. The plane
+ * goes through the first particle, the particle farthest from the first, and the particle farthest
+ * from the line between these two. */
 static void mcor_find_normal(mcor_watch* watch)
 {
-  double from[MCOR_WATCHED][3], along[3] = { 0 }, normal[3] = { 0 }, h = DBL_MAX;
+  double from[MCOR_WATCHED][3], along[3] = { 0 }, h = DBL_MAX, *normal = watch->normal;
   for (int s = 0; s < watch->count; ++s)
   {
     mcor_subtract(watch->sample[s].x, watch->sample[0].x, from[s]);
@@ -56,21 +57,15 @@ static void mcor_find_normal(mcor_watch* watch)
     mcor_cross(along, from[s], cross);
     if (mcor_dot(cross, cross) > mcor_dot(normal, normal))
     {
-      memcpy(normal, cross, sizeof normal);
+      memcpy(normal, cross, sizeof cross);
     }
   }
   const double length = sqrt(mcor_dot(along, along)), size = mcor_normalise(normal);
-  bool in_plane = length > MCOR_BROAD * h && size > MCOR_BROAD * h * length;
-  for (int s = 0; s < watch->count && in_plane; ++s)
+  watch->has_normal = length > MCOR_BROAD * h && size > MCOR_BROAD * h * length;
+  for (int s = 0; s < watch->count && watch->has_normal; ++s)
   {
-    in_plane = fabs(mcor_dot(normal, from[s])) < MCOR_THIN * h;
+    watch->has_normal = fabs(mcor_dot(normal, from[s])) < MCOR_THIN * h;
   }
-  memcpy(watch->normal, normal, in_plane ? sizeof normal : 0);
-}
-
-static bool mcor_has_normal(const mcor_watch* watch)
-{
-  return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
 /* Counts, for each watched particle, the neighbours in a chunk, and updates its distance to the
@@ -134,22 +129,6 @@ static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int 
   m->filled = mcor_median_of(filled, watch->count);
   m->h_median = mcor_median_of(h, watch->count);
   return MCOR_OK;
-}
-
-static void mcor_begin_watch(const mcor_context* context, mcor_watch* watch)
-{
-  const mcor_sample_list* fluid = &context->samples[0];
-  *watch = (mcor_watch){ .sample = fluid->of,
-    .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
-    .support = mcor_support_factor(context->run.options->sph_kernel) };
-  for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
-  {
-    watch->nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;
-  }
-  if (context->space.axes == 3)
-  {
-    mcor_find_normal(watch);
-  }
 }
 
 /* ---- All particles ---- */
@@ -249,8 +228,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   const mcor_context* context = job->context;
   const mcor_input* input = job->input;
   const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM,
-             is_widened = mcor_is_given(&input->widening),
-             has_normal = mcor_has_normal(&job->watch);
+             is_widened = mcor_is_given(&input->widening), has_normal = job->watch.has_normal;
   const double origin = has_normal ? mcor_dot(job->watch.normal, job->watch.sample[0].x) : 0;
   mcor_findings r = mcor_no_findings();
   mcor_places part[2]; /* the chunk's fluid, then its solids */
@@ -319,8 +297,12 @@ static mcor_status mcor_measure_particles(mcor_context* context, const mcor_inpu
 {
   mcor_measure* m = &context->measure;
   const mcor_options* options = context->run.options;
+  const mcor_sample_list* fluid = &context->samples[0];
   mcor_measuring job = { .context = context,
     .input = input,
+    .watch = { .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
+      .sample = fluid->of,
+      .support = mcor_support_factor(options->sph_kernel) },
     .reach = mcor_support_factor(options->sph_kernel) * options->h_scale,
     .level = options->iso_count > 0 ? DBL_MAX : 0.5 };
   int slices;
@@ -336,7 +318,14 @@ static mcor_status mcor_measure_particles(mcor_context* context, const mcor_inpu
   {
     job.level = fmin(job.level, options->iso_values[k]);
   }
-  mcor_begin_watch(context, &job.watch);
+  for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
+  {
+    job.watch.nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;
+  }
+  if (context->space.axes == 3)
+  {
+    mcor_find_normal(&job.watch);
+  }
   MCOR_TRY(
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
   mcor_findings found = mcor_merge_findings(job.slices, slices);
@@ -364,7 +353,7 @@ static mcor_status mcor_measure_particles(mcor_context* context, const mcor_inpu
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->first;
   const double extent = r->most[MCOR_OFF_PLANE] - r->least[MCOR_OFF_PLANE];
-  if (mcor_has_normal(&job.watch) && extent < MCOR_THIN * m->h_median)
+  if (job.watch.has_normal && extent < MCOR_THIN * m->h_median)
   {
     memcpy(m->plane_normal, job.watch.normal, sizeof m->plane_normal);
     m->plane_extent = extent;

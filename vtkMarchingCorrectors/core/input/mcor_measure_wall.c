@@ -113,38 +113,29 @@ static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-static int mcor_compare_shares(const void* a, const void* b)
-{
-  const mcor_wall_sample *s = a, *t = b;
-  return s->share != t->share ? (s->share < t->share ? -1 : 1)
-                              : (s->fluid > t->fluid) - (s->fluid < t->fluid);
-}
-
-/* Sorts the samples by share, and returns the share at which half of the fluid's weight is counted,
- * at least 0.01 and at most 0.99. Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
+/* Returns the share at which half of the fluid's weight is counted, at least 0.01 and at most 0.99.
+ * Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
 static double mcor_median_share(mcor_wall_measure* wall)
 {
-  int count = 0;
-  double sum = 0, counted = 0;
+  double sum = 0, median = INFINITY;
   for (int s = 0; s < wall->count; ++s)
   {
     const double fluid = (double)wall->weights[0][s][0], solid = (double)wall->weights[0][s][1];
-    if (fluid > 0 && solid > 0)
-    {
-      sum += fluid;
-      wall->sample[count++] = (mcor_wall_sample){ .fluid = fluid, .share = solid / (fluid + solid) };
-    }
+    wall->sample[s].fluid = fluid > 0 && solid > 0 ? fluid : 0;
+    wall->sample[s].share = solid / (fluid + solid);
+    sum += wall->sample[s].fluid;
   }
-  qsort(wall->sample, (size_t)count, sizeof wall->sample[0], mcor_compare_shares);
-  for (int s = 0; s < count; ++s)
+  for (int s = 0; s < wall->count; ++s)
   {
-    counted += wall->sample[s].fluid;
-    if (counted >= 0.5 * sum)
+    double counted = 0; /* the weight at samples whose share is not greater */
+    for (int t = 0; t < wall->count; ++t)
     {
-      return fmin(fmax(wall->sample[s].share, 0.01), 0.99);
+      counted += wall->sample[t].share <= wall->sample[s].share ? wall->sample[t].fluid : 0;
     }
+    const bool is_enough = wall->sample[s].fluid > 0 && counted >= 0.5 * sum;
+    median = is_enough ? fmin(median, wall->sample[s].share) : median;
   }
-  return MCOR_FREE_WALL_SHARE; /* no fluid is near */
+  return median < INFINITY ? fmin(fmax(median, 0.01), 0.99) : MCOR_FREE_WALL_SHARE;
 }
 
 /* Sorts the samples along an axis without a period, if there is one, and weighs fluid and solids at

@@ -123,7 +123,7 @@ struct ChunkProgress
 /**
  * If KeepDeviceData is off, particles have this version in a run of several chunks. Without a
  * version, each chunk would make the search grid anew. No kept run has this version. In a run of one
- * chunk, particles have no version, so that only particles near its points go to the device.
+ * chunk, particles have no version, so that only those near the points go to the device.
  */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 

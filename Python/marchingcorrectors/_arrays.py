@@ -297,7 +297,7 @@ class Arguments(Found):
         return values
 
     def bounds_of_period(self, period):
-        """Returns six bounds, or None for None. For three lengths, the particles tell where the bounds begin."""
+        """Returns the six bounds of a period; None if the period is None. The particles tell where a period of three lengths begins."""
         if isinstance(period, (bool, str)) or period is not None and np.size(period) not in (3, 6):
             raise InvalidArgument(f"periodic is {period!r}; it must be {BOUNDS}, or three lengths, 0 along axes that are not "
                                   "periodic.")

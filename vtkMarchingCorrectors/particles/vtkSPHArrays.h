@@ -131,7 +131,7 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
   vtkSPHAdd(data, name, std::vector<T>(values, values + N));
 }
 ///@}
-/** Adds an array with one count for each level of cubes, up to the last level with a count above 0; at least one count. */
+/** Adds an array with one count for each level of cubes, up to the last level with a count above 0. It has at least one count. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 
@@ -206,7 +206,7 @@ private:
   std::vector<vtkSmartPointer<vtkAbstractArray>> Held;
 };
 
-/** Returns the name of the most suitable array to show, or "". */
+/** Returns the name of the most suitable array to show; "" if none is suitable. */
 VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHChooseArray(
   vtkFieldData* data, const mcor_ranks* ranks = nullptr);
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
@@ -214,7 +214,7 @@ inline bool vtkSPHIsReal(vtkAbstractArray* array)
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
 }
 
-/** Returns the array itself if it holds floats or doubles, one after another; else a copy. */
+/** Returns the array itself if it holds floats or doubles, one after another; else a copy as doubles. */
 vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
 
 /** Views an array of floats or doubles that lie one after another. */

@@ -401,7 +401,7 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
                       *const x1 = far.Particles->GetPoints()->GetData();
   const Values from(x0), to(x1), begun(curved ? near.Velocities.Get() : x0),
     ended(curved ? far.Velocities.Get() : x1);
-  // Hermite's cubic polynomials, for the far position and for both tangents.
+  // Hermite's cubic polynomials: the factors of the far position and of both velocities.
   const double ofFar = share * share * (3.0 - 2.0 * share),
                ofBegun = share * (1.0 - share) * (1.0 - share),
                ofEnded = share * share * (share - 1.0);

@@ -70,7 +70,7 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 
 
 def count_steps(path: PathName) -> int:
-    """Returns how many steps a file holds. Can be more than one only for .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series."""
+    """Returns how many steps a file holds. Only .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series may hold more than one."""
     reader = reader_of(Path(path))
     return len(read(path).times or [0]) if (reader and reader[2]) or Path(path).suffix.lower() in HDF5 else 1
 

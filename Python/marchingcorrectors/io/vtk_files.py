@@ -111,7 +111,7 @@ BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
 
 
 def decode_base64(text):
-    """Decodes one base64 piece after the other, each with padding at its end."""
+    """Returns the bytes of all base64 pieces of a text, joined. Each piece may end with padding."""
     text = text.translate(None, b" \t\r\n")
     if text.translate(None, BASE64):
         raise ValueError("letters that are not base64's")

@@ -226,8 +226,8 @@ def by_name(file, pairs):
 
 
 class Body(NamedTuple):
-    """The points of a file at one of its times. times: the times of all steps; None if the file is no film. is_mesh: whether there are cells,
-    but no vertices; None if there are no cells."""
+    """The points of a file at one of its times. times: the times of all steps; None if the file is no film. is_mesh: whether there are
+    cells, but no vertices; None if there are no cells."""
     points: np.ndarray
     arrays: Dict[str, np.ndarray]
     time: Optional[float] = None

@@ -143,7 +143,7 @@ class Film:
             self._save()
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
-        """Returns {name: (type, values)} of `velocities` and of a primvar for each array. of_points: takes a prim's values from an array."""
+        """Returns {name: (type, values)} of `velocities` and of a primvar for each array. of_points: takes a prim's values of an array."""
         values = {}
         if velocities is not None:
             values["velocities"] = ("Vector3f", of_points(velocities) / self.slow)

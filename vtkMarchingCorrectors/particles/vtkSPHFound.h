@@ -50,8 +50,8 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
 /**
- * Finds the period in the field data of the first process that has one. `problem` becomes a
- * sentence if another process has a different period. Collective.
+ * Finds the period in the field data of the first process that has a period or a tilted cell.
+ * `problem` becomes a sentence if another process has a different one. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);

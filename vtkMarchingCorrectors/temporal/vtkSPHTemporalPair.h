@@ -42,7 +42,7 @@ public:
 
   std::string Error;
   std::vector<std::string> Warnings; // warnings of the last Match(); empty if it kept the match
-  double Ratio = 0.0; // motion / motion by the velocities, if one of Warnings tells it; else 0
+  double Ratio = 0.0; // motion / motion by the velocities, if they do not fit; else 0
   std::string IdName, VelocityName;  // names of the arrays used
 
 private:

@@ -387,12 +387,17 @@ static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
   return MCOR_OK;
 }
 
-/* Adds up the sections over the particles of this rank. */
-static mcor_status mcor_flux_particles(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flux_job* job)
+static mcor_status mcor_run_flux(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
+  mcor_flux_job job = *(const mcor_flux_job*)data;
   int64_t not_finite[2] = { -1, -1 };
-  const int axes = context->space.axes, components = job->velocity_components;
+  const int axes = context->space.axes, components = job.velocity_components;
+  job.is_plane = mcor_is_plane(context);
+  job.plane = &context->plane;
+  job.across = mcor_plane_axis(job.plane, 2);
+  job.form = &mcor_flux_forms[job.is_plane];
+  mcor_free_fluxes(job.fluxes); /* results of an earlier attempt */
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_FAIL_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(VELOCITY_COMPONENTS), components, axes == 2 ? ", or 2 in two dimensions" : "");
@@ -404,35 +409,24 @@ static mcor_status mcor_flux_particles(
     MCOR_FAIL_IF(not_finite[a] >= 0, context, MCOR_INVALID_DATA, MCOR_SAY(FLUX_NOT_FINITE),
       a == 0 ? "velocity" : "density", (long long)not_finite[a]);
   }
-  for (int64_t s = 0; s < job->section_count; ++s)
+  job.found = calloc((size_t)job.section_count + 1, sizeof *job.found);
+  mcor_status status = mcor_allocated(context, job.found);
+  for (int64_t s = 0; s < job.section_count && status == MCOR_OK; ++s)
   {
     /* A line needs the plane of the particles, which a rank without particles does not know. */
     const bool has_place =
-      input->count > 0 || job->is_plane || job->sections[s].shape != MCOR_SECTION_LINES;
-    MCOR_TRY(has_place ? mcor_add_section(job, s) : MCOR_OK);
+      input->count > 0 || job.is_plane || job.sections[s].shape != MCOR_SECTION_LINES;
+    status = has_place ? mcor_add_section(&job, s) : MCOR_OK;
   }
-  MCOR_TRY(mcor_scale_flux(job));
-  const double margin = options->globals
-    ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
-      0.5 * options->globals->measured.cube
-    : 0;
-  return input->count == 0 || job->section_count == 0
-    ? MCOR_OK
-    : mcor_run_level(&job->base, input, options, margin, mcor_add_fluxes);
-}
-
-static mcor_status mcor_run_flux(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
-{
-  mcor_flux_job job = *(const mcor_flux_job*)data;
-  job.is_plane = mcor_is_plane(context);
-  job.plane = &context->plane;
-  job.across = mcor_plane_axis(job.plane, 2);
-  job.form = &mcor_flux_forms[job.is_plane];
-  mcor_free_fluxes(job.fluxes); /* results of an earlier attempt */
-  job.found = calloc((size_t)job.section_count + 1, sizeof *job.found);
-  mcor_status status = mcor_allocated(context, job.found);
-  MCOR_THEN(status, mcor_flux_particles(context, input, options, &job));
+  MCOR_THEN(status, mcor_scale_flux(&job));
+  if (input->count > 0 && job.section_count > 0)
+  {
+    const double margin = options->globals
+      ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
+        0.5 * options->globals->measured.cube
+      : 0;
+    MCOR_THEN(status, mcor_run_level(&job.base, input, options, margin, mcor_add_fluxes));
+  }
   MCOR_THEN(status, mcor_read_fluxes(&job, job.fluxes));
   free(job.found);
   free(job.pieces.of);

@@ -479,24 +479,6 @@ static mcor_status mcor_gauge_all(mcor_level_job* base)
   return MCOR_OK;
 }
 
-/* Makes the records from the particles of this rank. */
-static mcor_status mcor_gauge_particles(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
-{
-  MCOR_TRY(mcor_check_input(context, input, options));
-  for (int64_t i = 0; i < job->line_count; ++i)
-  {
-    MCOR_TRY(mcor_take_line(job, i));
-  }
-  MCOR_TRY(mcor_list_components(context, input, false, NULL));
-  const double margin = options->globals
-    ? MCOR_GAUGE_MARGIN * (MCOR_GAUGE_STEP * options->h_scale * options->globals->measured.h_min)
-    : 0;
-  return input->count == 0 || job->line_count == 0
-    ? MCOR_OK
-    : mcor_run_level(&job->base, input, options, margin, mcor_gauge_all);
-}
-
 static mcor_status mcor_run_gauge(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -506,7 +488,19 @@ static mcor_status mcor_run_gauge(
   mcor_free_gauges(job.gauges); /* results of an earlier attempt */
   job.lines = malloc((size_t)job.line_count * sizeof *job.lines + 1);
   mcor_status status = mcor_allocated(context, job.lines);
-  MCOR_THEN(status, mcor_gauge_particles(context, input, options, &job));
+  MCOR_THEN(status, mcor_check_input(context, input, options));
+  for (int64_t i = 0; i < job.line_count; ++i)
+  {
+    MCOR_THEN(status, mcor_take_line(&job, i));
+  }
+  MCOR_THEN(status, mcor_list_components(context, input, false, NULL));
+  if (input->count > 0 && job.line_count > 0)
+  {
+    const double margin = options->globals
+      ? MCOR_GAUGE_MARGIN * (MCOR_GAUGE_STEP * options->h_scale * options->globals->measured.h_min)
+      : 0;
+    MCOR_THEN(status, mcor_run_level(&job.base, input, options, margin, mcor_gauge_all));
+  }
   MCOR_THEN(status,
     mcor_gather_records(
       context, job.records.of, job.records.count, sizeof *job.records.of, &all, &count));

@@ -40,12 +40,10 @@ static void mcor_read_points(
 {
   const mcor_lattice* lattice = &run->context->lattice;
   const mcor_box* box = &run->context->box;
-  mcor_array points = *run->points;
-  points.components = 3;
   for (int a = 0; a < 3; ++a)
   {
     const double origin = (double)lattice->origin[a], step = (double)lattice->step[a];
-    mcor_read_array(&points, run->first + first, count, a, at[a]);
+    mcor_read_array(run->points, run->first + first, count, a, at[a]);
     for (int i = 0; i < count; ++i)
     {
       at[a][i] = at[a][i] / lattice->edge[a] - origin;
@@ -364,55 +362,6 @@ static mcor_status mcor_make_samples(
     : MCOR_OK;
 }
 
-static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* options)
-{
-  mcor_context* context = run->context;
-  const mcor_input* input = run->input;
-  mcor_samples* samples = run->samples;
-  const bool gradients = options->outputs & MCOR_OUT_GRADIENTS;
-  mcor_free_samples(samples); /* results of an earlier attempt */
-  samples->count = run->point_count;
-  MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_TRY(mcor_make_samples(context, input, gradients, samples));
-  if (input->count == 0 || samples->count == 0)
-  {
-    return MCOR_OK;
-  }
-  if (!mcor_bound_by_box(context, options))
-  {
-    /* Lets the call use only particles near the caller's finite points. */
-    mcor_array points = *run->points;
-    points.components = 3;
-    for (int a = 0; a < 3; ++a)
-    {
-      const mcor_findings found =
-        mcor_find_range(context, &points, NULL, MCOR_SKIP_SOLIDS, samples->count, a);
-      context->box.points[2 * a] = found.least[0];
-      context->box.points[2 * a + 1] = found.most[0];
-    }
-    context->box.has_points = true;
-    context->box.of_points = input->particles_version == 0 || context->run.far;
-  }
-  MCOR_TRY(mcor_prepare(context, input, options));
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
-  const mcor_status status = context->grid.count > 0 ? mcor_probe_all(run) : MCOR_OK;
-  mcor_release_probe(run);
-  /* Keeps the attributes on the device for the next probe, if all of them fit at once. */
-  mcor_attributes* attributes = &context->attributes;
-  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !options->globals;
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    all = all && samples->attribute_not_finite[a] < 0;
-  }
-  attributes->kept = all ? input->attributes_version : 0;
-  if (attributes->kept == 0)
-  {
-    mcor_release(context, &attributes->sorted);
-  }
-  MCOR_TRY(status);
-  return mcor_finish_field(context);
-}
-
 mcor_status mcor_finish_field(mcor_context* context)
 {
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
@@ -424,26 +373,62 @@ static mcor_status mcor_run_probe(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_probe_run run = *(const mcor_probe_run*)data;
-  const mcor_plane* plane = &context->plane;
   mcor_samples* s = run.samples;
-  mcor_array points = { 0 };
+  mcor_attributes* attributes = &context->attributes;
   double* flat = NULL;
   run.input = input;
-  if (mcor_is_plane(context) && run.point_count > 0)
+  mcor_free_samples(s); /* results of an earlier attempt */
+  s->count = run.point_count;
+  MCOR_TRY(mcor_check_input(context, input, options));
+  MCOR_TRY(mcor_make_samples(context, input, options->outputs & MCOR_OUT_GRADIENTS, s));
+  if (input->count == 0 || s->count == 0)
   {
-    MCOR_TRY(mcor_flatten_positions(context, run.points, run.point_count, true, &points, &flat));
-    run.points = &points;
+    return MCOR_OK;
   }
-  const mcor_status status = mcor_probe_points(&run, options);
+  mcor_array points = *run.points;
+  points.components = 3;
+  if (mcor_is_plane(context))
+  {
+    MCOR_TRY(mcor_flatten_positions(context, run.points, s->count, true, &points, &flat));
+  }
+  run.points = &points;
+  if (!mcor_bound_by_box(context, options))
+  {
+    /* Lets the call use only particles near the caller's finite points. */
+    for (int a = 0; a < 3; ++a)
+    {
+      const mcor_findings found =
+        mcor_find_range(context, &points, NULL, MCOR_SKIP_SOLIDS, s->count, a);
+      context->box.points[2 * a] = found.least[0];
+      context->box.points[2 * a + 1] = found.most[0];
+    }
+    context->box.has_points = true;
+    context->box.of_points = input->particles_version == 0 || context->run.far;
+  }
+  mcor_status status = mcor_prepare(context, input, options);
+  MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
+  MCOR_THEN(status, context->grid.count > 0 ? mcor_probe_all(&run) : MCOR_OK);
+  mcor_release_probe(&run);
   free(flat);
+  /* Keeps the attributes on the device for the next probe, if all of them fit at once. */
+  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !options->globals;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    all = all && s->attribute_not_finite[a] < 0;
+  }
+  attributes->kept = all ? input->attributes_version : 0;
+  if (attributes->kept == 0)
+  {
+    mcor_release(context, &attributes->sorted);
+  }
   MCOR_TRY(status);
-  mcor_unflatten_doubles(plane, s->weight_gradient, s->count, 0);
+  mcor_unflatten_doubles(&context->plane, s->weight_gradient, s->count, 0);
   for (int a = 0; a < s->attribute_count && s->gradients; ++a)
   {
     const int64_t width = mcor_components(&input->attributes[a]);
-    mcor_unflatten_doubles(plane, s->gradients[a], s->count * width, 0);
+    mcor_unflatten_doubles(&context->plane, s->gradients[a], s->count * width, 0);
   }
-  return MCOR_OK;
+  return mcor_finish_field(context);
 }
 
 /* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the free

@@ -11,7 +11,7 @@ typedef struct mcor_probe_run
 {
   mcor_context* context;
   const mcor_input* input;
-  const mcor_array* points;
+  const mcor_array* points; /* of three components */
   int64_t point_count;
   mcor_samples* samples;
   bool is_sum;

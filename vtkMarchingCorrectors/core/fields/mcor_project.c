@@ -14,7 +14,8 @@
 #define MCOR_MOST_PIXELS 32768 /* along the longer side */
 #define MCOR_MOST_PERIODS 2    /* longest support, in periods; more would need too many images */
 #define MCOR_MOST_IMAGES 16    /* the most images of a period in a box, along an axis */
-#define MCOR_MOST_LENGTHS 1e6  /* the longest side of an image without a box, in the largest
+#define MCOR_MOST_LENGTHS                                                                          \
+  1e6 /* the longest side of an image without a box, in the largest
                                 * smoothing length */
 
 /* ---- the image ---- */
@@ -190,30 +191,6 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 
 /* ---- the call ---- */
 
-/* Makes the search grid if it is needed: for volumes that are computed, or an estimated
- * smoothing length. */
-static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_options* options)
-{
-  mcor_context* context = job->context;
-  const mcor_input* input = job->input;
-  const bool needs_volume =
-    !mcor_projects_density(input) || !mcor_is_given(&input->mass) || job->channels == 2;
-  const bool computes = needs_volume && mcor_needs_density(input) && !job->places_only;
-  if (!computes && !input->estimate_smoothing_length)
-  {
-    mcor_check_reuse(context, input, options); /* data kept from earlier calls may belong to other
-                                                * particles */
-    return MCOR_OK;
-  }
-  mcor_bound_by_box(context, options);
-  if (input->count == 0)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_prepare(context, input, options));
-  return computes ? mcor_read_volumes(context, input, &job->volumes) : MCOR_OK;
-}
-
 static mcor_status mcor_run_project(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -235,8 +212,22 @@ static mcor_status mcor_run_project(
   MCOR_FAIL_IF(!job->places_only && mcor_projects_density(input) && !mcor_is_given(&input->mass) &&
       !mcor_is_given(&input->density),
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_COLUMN_DENSITY));
+  /* Makes the search grid if it is needed: for volumes that are computed, or an estimated smoothing
+   * length. If not, data kept from earlier calls may belong to other particles. */
+  const bool computes = mcor_needs_density(input) && !job->places_only &&
+    (!mcor_projects_density(input) || !mcor_is_given(&input->mass) || job->channels == 2);
   bool is_empty = true;
-  mcor_status status = mcor_prepare_project(job, options);
+  mcor_status status = MCOR_OK;
+  if (!computes && !input->estimate_smoothing_length)
+  {
+    mcor_check_reuse(context, input, options);
+  }
+  else if (input->count > 0)
+  {
+    mcor_bound_by_box(context, options);
+    status = mcor_prepare(context, input, options);
+    MCOR_THEN(status, computes ? mcor_read_volumes(context, input, &job->volumes) : MCOR_OK);
+  }
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
   MCOR_THEN(status, mcor_choose_axes(job));
   MCOR_THEN(status, mcor_place_image(job, &is_empty));

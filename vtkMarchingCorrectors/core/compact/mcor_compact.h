@@ -82,8 +82,7 @@ typedef struct mcor_bunches
   int32_t*
     before; /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the
                     * bunch to a corner of the list's previous triangle; -1: there is none */
-  mcor_point* points; /* [point_room], of which point_count are the mesh's vertices */
-  size_t point_room;
+  mcor_point* points; /* [point_count], of the mesh's vertices */
   int point_count;
   MCOR_LIST(mcor_start) starts;
   /* For loops over vertices: views of the mesh's buffers or, of vertices that are being appended,

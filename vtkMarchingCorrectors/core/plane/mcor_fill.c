@@ -112,12 +112,10 @@ mcor_status mcor_begin_fill(mcor_context* context)
     MCOR_INVALID_ARGUMENT, MCOR_SAY(REGION_WITHOUT_END), least);
   const mcor_box* box = &context->box;
   mcor_cap_nodes* nodes = &fill->nodes;
-  *nodes = (mcor_cap_nodes){ .axis = 2, .upper = 1, .across = { 0, 1 } };
-  for (int a = 0; a < 2; ++a)
-  {
-    nodes->range[a][0] = box->first[a];
-    nodes->range[a][1] = box->last[a];
-  }
+  *nodes = (mcor_cap_nodes){ .axis = 2,
+    .upper = 1,
+    .across = { 0, 1 },
+    .range = { { box->first[0], box->last[0] }, { box->first[1], box->last[1] } } };
   MCOR_TRY(mcor_find_cap_bricks(context, 1, nodes));
   nodes->value = calloc((size_t)nodes->node_count, sizeof *nodes->value);
   fill->band = calloc((size_t)nodes->node_count, sizeof *fill->band);

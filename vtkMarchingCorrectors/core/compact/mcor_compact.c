@@ -235,47 +235,39 @@ static mcor_status mcor_end_bunches(mcor_bunches* bunches)
   return status;
 }
 
-static mcor_status mcor_merge(mcor_bunches* bunches)
-{
-  mcor_context* context = bunches->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)bunches->vertex_count,
-               corners = 3 * (size_t)bunches->triangle_count * sizeof(int32_t);
-  bunches->of = malloc(n * sizeof *bunches->of);
-  bunches->triangles = malloc(corners);
-  bunches->before = malloc(corners);
-  MCOR_TRY(mcor_allocated(context, bunches->of && bunches->triangles && bunches->before));
-  mcor_use_large_pages(bunches->of, n * sizeof *bunches->of);
-  mcor_use_large_pages(bunches->triangles, corners);
-  mcor_use_large_pages(bunches->before, corners);
-  MCOR_TRY(mcor_read(context, &mesh->triangles, 0, bunches->triangles, corners));
-  MCOR_TRY(mcor_read_points(bunches));
-  MCOR_TRY(mcor_find_bunches(bunches));
-  MCOR_TRY(mcor_add_vertices(bunches));
-  MCOR_TRY(mcor_take_apart(bunches));
-  MCOR_TRY(mcor_move_slivers(bunches));
-  return mcor_end_bunches(bunches);
-}
-
 mcor_status mcor_compact(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
-  mcor_bunches bunches = { .context = context,
-    .corners = context->space.axes,
-    .march_count = mesh->march_count,
-    .vertex_count = mesh->vertex_count,
-    .triangle_count = mesh->triangle_count };
+  const size_t corners = 3 * (size_t)mesh->triangle_count * sizeof(int32_t);
   int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];
   if (mesh->triangle_count == 0 || mesh->march_count == 0)
   {
     return MCOR_OK;
   }
+  mcor_bunches bunches = { .context = context,
+    .corners = context->space.axes,
+    .march_count = mesh->march_count,
+    .vertex_count = mesh->vertex_count,
+    .triangle_count = mesh->triangle_count,
+    .triangles = malloc(corners),
+    .of = malloc((size_t)mesh->vertex_count * sizeof *bunches.of),
+    .before = malloc(corners) };
   for (int a = 0; a < 3; ++a)
   {
     bunches.edge[a] = mcor_edge_of(&context->lattice, a);
   }
   memcpy(cut_first, mesh->level_first[1], sizeof cut_first);
-  const mcor_status status = mcor_merge(&bunches);
+  mcor_status status = mcor_allocated(context, bunches.triangles && bunches.of && bunches.before);
+  mcor_use_large_pages(bunches.triangles, corners);
+  mcor_use_large_pages(bunches.of, (size_t)mesh->vertex_count * sizeof *bunches.of);
+  mcor_use_large_pages(bunches.before, corners);
+  MCOR_THEN(status, mcor_read(context, &mesh->triangles, 0, bunches.triangles, corners));
+  MCOR_THEN(status, mcor_read_points(&bunches));
+  MCOR_THEN(status, mcor_find_bunches(&bunches));
+  MCOR_THEN(status, mcor_add_vertices(&bunches));
+  MCOR_THEN(status, mcor_take_apart(&bunches));
+  MCOR_THEN(status, mcor_move_slivers(&bunches));
+  MCOR_THEN(status, mcor_end_bunches(&bunches));
   memcpy(mesh->level_first[1], cut_first, sizeof cut_first);
   mesh->march_count = bunches.march_count;
   mesh->vertex_count = bunches.vertex_count;

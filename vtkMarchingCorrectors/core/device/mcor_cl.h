@@ -12,6 +12,8 @@
 
 #define MCOR_KEPT_BUFFERS 32 /* at most */
 #define MCOR_LOCKED_LIMIT 32 /* at most */
+/* Most segments into which scans and sorts cut their arrays. */
+#define MCOR_SEGMENT_LIMIT 4096
 
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
 typedef struct mcor_buffer

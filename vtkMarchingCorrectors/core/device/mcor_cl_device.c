@@ -280,7 +280,8 @@ static mcor_status mcor_start_device(
     cl->pool = mcor_native_pool(cl->context);
     cl->units = cl->pool->threads = share < cl->units ? share : cl->units;
   }
-  cl->segments = cl->is_cpu ? cl->units * 8 : 4096;
+  const bool is_small = cl->is_cpu && cl->units < MCOR_SEGMENT_LIMIT / 8;
+  cl->segments = is_small ? cl->units * 8 : MCOR_SEGMENT_LIMIT;
   cl->queue = clCreateCommandQueue(
     cl->context, cl->device, cl->profile ? CL_QUEUE_PROFILING_ENABLE : 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");

@@ -21,31 +21,35 @@ static int mcor_segments(const mcor_context* context, int count)
   return most < 1 ? 1 : most < context->cl.segments ? most : context->cl.segments;
 }
 
-/* Launches the exclusive prefix sum of counts[0..count). Element `count`, and the element behind
- * the segments' sums, become the total. The buffer holds count + 1 ints. */
-static mcor_status mcor_launch_scan(
-  mcor_context* context, const mcor_buffer* counts, int count, int segments)
+/* Replaces counts[0..count) by their exclusive prefix sums, and element `count` by the total. The
+ * buffer holds count + 1 ints. The host makes the prefix sums of the segments' sums. */
+static mcor_status mcor_scan_segments(
+  mcor_context* context, const mcor_buffer* counts, int count, int segments, int64_t* total)
 {
-  MCOR_TRY(mcor_reserve(context, &context->scan_sums, ((size_t)segments + 1) * sizeof(cl_long)));
-  if (segments > 1)
+  mcor_buffer* buffer = &context->scan_sums;
+  cl_long sums[MCOR_SEGMENT_LIMIT];
+  const size_t bytes = (size_t)segments * sizeof sums[0];
+  *total = 0;
+  MCOR_TRY(mcor_reserve(context, buffer, bytes));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", mcor_walk(count), segments, MCOR_BUFFER(counts),
+    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(buffer)));
+  MCOR_TRY(mcor_read(context, buffer, 0, sums, bytes));
+  for (int s = 0; s < segments; ++s)
   {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", mcor_walk(count), segments, MCOR_BUFFER(counts),
-      MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->scan_sums)));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_LIGHT, 64, MCOR_INT(segments),
-      MCOR_BUFFER(&context->scan_sums)));
+    const cl_long sum = sums[s];
+    sums[s] = *total;
+    *total += sum;
   }
+  MCOR_TRY(mcor_write(context, buffer, sums, bytes));
   return MCOR_LAUNCH(context, "mcor_scan_fill", mcor_walk(count), segments, MCOR_BUFFER(counts),
-    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->scan_sums));
+    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(buffer));
 }
 
-/* Scans as mcor_launch_scan does, and reads the total. */
+/* Scans as mcor_scan_segments does. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
 {
-  const int segments = mcor_segments(context, count);
-  cl_long sum = 0;
-  MCOR_TRY(mcor_launch_scan(context, counts, count, segments));
-  MCOR_TRY(
-    mcor_read(context, &context->scan_sums, (size_t)segments * sizeof(cl_long), &sum, sizeof sum));
+  int64_t sum;
+  MCOR_TRY(mcor_scan_segments(context, counts, count, mcor_segments(context, count), &sum));
   MCOR_FAIL_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY, MCOR_SAY(TABLE_TOO_LARGE),
     (long long)sum, MCOR_COUNT_LIMIT);
   *total = (int)sum;
@@ -111,8 +115,9 @@ mcor_status mcor_sort(
       MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift + in), MCOR_INT(bits),
       MCOR_BUFFER(&context->sort.histogram)));
     const int counters = segments << bits; /* their sum is `count` */
-    MCOR_TRY(mcor_launch_scan(
-      context, &context->sort.histogram, counters, mcor_segments(context, counters)));
+    int64_t sum;
+    MCOR_TRY(mcor_scan_segments(
+      context, &context->sort.histogram, counters, mcor_segments(context, counters), &sum));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_sort_fill", mcor_walk(count), segments, MCOR_BUFFER(keys),
       MCOR_BUFFER(values), MCOR_INT(count), MCOR_INT(segments), MCOR_INT(shift), MCOR_INT(bits),
       MCOR_INT(in), MCOR_INT(out), MCOR_BUFFER(&context->sort.histogram),

@@ -97,9 +97,6 @@ void mcor_grid_heap_sort(
 #define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
 
 #if MCOR_LANES > 1
-#define MCOR_LOAD_OWN MCOR_CAT(vload, MCOR_LANES)
-#define MCOR_STORE_OWN MCOR_CAT(vstore, MCOR_LANES)
-
 /* Sorts a cell's particles by x. Returns false if two of them have the same x. A particle's place
  * is the number of particles before it, counted for MCOR_LANES particles at once. */
 bool mcor_grid_rank(
@@ -108,7 +105,7 @@ bool mcor_grid_rank(
   fixv most = 1;
   for (int begin = cell; begin < end; begin += MCOR_LANES)
   {
-    const fixv at = MCOR_LOAD_OWN(0, own + begin);
+    const fixv at = MCOR_LOAD(begin, own);
     fixv before = 0, same = 0;
     for (int k = cell; k < end; ++k)
     {
@@ -140,9 +137,7 @@ int mcor_grid_insert(
     item[i] = order[i];
     own[i] = x[item[i]];
   }
-#if MCOR_LANES > 1
-  MCOR_STORE_OWN((fixv)0, 0, own + count); /* fills the last vector; nobody uses these lanes */
-#endif
+  MCOR_STORE((fixv)0, count, own); /* fills the last vector; nobody uses these lanes */
   for (int cell = 0, end; cell < count; cell = end)
   {
     for (end = cell + 1; end < count && keys[end] == keys[cell];)

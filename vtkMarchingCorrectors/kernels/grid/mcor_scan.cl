@@ -25,59 +25,13 @@ __kernel void mcor_scan_sum(
   sums[segment] = sum;
 }
 
-#if MCOR_LANES > 1
-/* The first work-item does all the work, because a CPU has few segments. Reads the segment sums.
- * Writes their exclusive prefix sums. */
-__kernel void mcor_scan_top(const int segments, __global long* sums)
-{
-  long sum = 0;
-  for (int i = 0; i < segments && get_global_id(0) == 0; ++i)
-  {
-    const long s = sums[i];
-    sums[i] = sum;
-    sum += s;
-  }
-}
-#else
-/* One work-item = a 64th of the segment sums; one work-group of 64 scans them all. Writes their
- * exclusive prefix sums. */
-__attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
-  const int segments, __global long* sums)
-{
-  __local long part[64];
-  const int item = get_local_id(0);
-  const int begin = mcor_segment_begin(item, 64, segments),
-            end = mcor_segment_begin(item + 1, 64, segments);
-  long sum = 0;
-  for (int i = begin; i < end; ++i)
-  {
-    sum += sums[i];
-  }
-  part[item] = sum;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  sum = 0;
-  for (int k = 0; k < item; ++k)
-  {
-    sum += part[k];
-  }
-  for (int i = begin; i < end; ++i)
-  {
-    const long s = sums[i];
-    sums[i] = sum;
-    sum += s;
-  }
-}
-
-#endif
-
-/* One work-item = one segment. Reads counts, and, if there are several segments, the scanned
- * segment sums. Replaces the counts by their exclusive prefix sums. Writes the total to element
- * `count`, and behind the segment sums. */
+/* One work-item = one segment. Reads counts, and the prefix sums of the segments' sums. Replaces the
+ * counts by their exclusive prefix sums. Writes the total to element `count`. */
 __kernel void mcor_scan_fill(
-  __global int* counts, const int count, const int segments, __global long* sums)
+  __global int* counts, const int count, const int segments, __global const long* sums)
 {
   MCOR_ITEM(segment, segment < segments);
-  long sum = segments > 1 ? sums[segment] : 0;
+  long sum = sums[segment];
   const int end = mcor_segment_begin(segment + 1, segments, count);
   for (int i = mcor_segment_begin(segment, segments, count); i < end; ++i)
   {
@@ -88,7 +42,6 @@ __kernel void mcor_scan_fill(
   if (segment == segments - 1)
   {
     counts[count] = (int)sum;
-    sums[segments] = sum;
   }
 }
 

@@ -80,7 +80,6 @@ typedef struct mcor_level
 #define MCOR_ABOVE 1
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* maybe both sides: evaluate */
-#define MCOR_UNTRIED 7 /* maybe both sides; no proof was tried */
 /* Bit that is added to the state of a leaf if the state leaves out nodes on the leaf's faces that
  * also belong to cells of other levels. */
 #define MCOR_OPEN_SIDES 4

@@ -18,7 +18,7 @@ static const char source[] =
   "    return;\n"
   "  const mcor_grid grid = MCOR_GRID;\n"
   "  mcor_query query = mcor_node_query(&grid, boxes[b], 0, boxes[b].w, 1);\n"
-  "  mcor_bound bound = mcor_bound_start();\n"
+  "  mcor_bound bound = { 0, 0, 0, 0, 0, 0 };\n"
   "  mcor_tile tile;\n"
   "  mcor_tile_init(&tile);\n"
   "  for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)\n"

@@ -26,13 +26,9 @@ static mcor_status mcor_test_cubes(
   MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, parts, MCOR_GRID_ARGS(context),
     MCOR_INT(parts), MCOR_BUFFER(index), MCOR_BUFFER(&context->bricks.rungs),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->block_states)));
-  if (box->is_part)
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, count, MCOR_INT(count),
-      MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
-      MCOR_CELL_ARGS(box->first, box->last, box->ring), MCOR_BUFFER(&bricks->block_states)));
-  }
+    MCOR_BUFFER(&bricks->block_keys), MCOR_SEED_ARGS(context),
+    MCOR_CELL_ARGS(box->first, box->last, box->is_part ? box->ring : MCOR_ENDLESS_RING),
+    MCOR_BUFFER(&bricks->block_states)));
   return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count,
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }

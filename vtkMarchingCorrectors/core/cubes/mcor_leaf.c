@@ -65,28 +65,6 @@ mcor_status mcor_choose_leaves(mcor_context* context)
     MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer));
 }
 
-/* Evaluates the nodes of all slots, except for nodes that are known or whose side is certain. Then
- * finds all nodes' sides of the iso value. */
-static mcor_status mcor_evaluate_slots(mcor_context* context)
-{
-  const mcor_options* options = context->run.options;
-  const mcor_bricks* bricks = &context->bricks;
-  const mcor_brick_data* now = &bricks->now;
-  /* Tries to prove that bricks are inside, if a work-item evaluates whole bricks; see
-   * MCOR_PROVES_INSIDE. */
-  const bool proves = options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
-    context->cl.lanes > 1 && context->space.axes == 3;
-  if (proves)
-  {
-    MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_prove", 1, bricks->first_slot,
-      bricks->first_slot + 1, MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
-      MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&context->adaptive.proofs),
-      MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
-  }
-  MCOR_TRY(mcor_evaluate_nodes(context));
-  return mcor_sign_nodes(context, &bricks->need);
-}
-
 mcor_status mcor_complete_leaves(mcor_context* context)
 {
   mcor_adaptive* adaptive = &context->adaptive;
@@ -105,7 +83,8 @@ mcor_status mcor_complete_leaves(mcor_context* context)
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
   MCOR_TRY(mcor_fill(context, &bricks->need, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_evaluate_slots(context));
+  MCOR_TRY(mcor_evaluate_nodes(context));
+  MCOR_TRY(mcor_sign_nodes(context, &bricks->need));
   MCOR_TRY(
     mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
@@ -116,7 +95,8 @@ mcor_status mcor_complete_leaves(mcor_context* context)
     MCOR_INT(context->space.flat), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&adaptive->mixed),
     MCOR_BUFFER(&bricks->need)));
-  MCOR_TRY(mcor_evaluate_slots(context));
+  MCOR_TRY(mcor_evaluate_nodes(context));
+  MCOR_TRY(mcor_sign_nodes(context, &bricks->need));
   MCOR_TRY(mcor_fill(context, &bricks->cells, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &bricks->plain, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &bricks->leaf_of, n * sizeof(cl_int)));

@@ -67,6 +67,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const mcor_box* box = &context->box;
   const int levels = context->lattice.levels;
+  /* Leaves of several levels are chosen within the box already. */
+  const int ring = box->is_part && levels == 1 ? box->ring : MCOR_ENDLESS_RING;
   const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
   /* Listed regions of level l: first[l] to end[l] - 1. */
   int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
@@ -80,19 +82,13 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_regions", 1, first, first + 1,
     MCOR_INT(context->space.region_depth), MCOR_BUFFER(&bricks->rungs),
     MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context),
-    MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits),
-    MCOR_BUFFER(&bricks->regions), MCOR_BUFFER(&bricks->found)));
+    MCOR_SEED_ARGS(context), MCOR_CELL_ARGS(box->first, box->last, ring),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(&bricks->regions),
+    MCOR_BUFFER(&bricks->found)));
   MCOR_TRY(mcor_read(context, &bricks->found, 0, end, counts));
   for (int l = 0; l < levels; ++l)
   {
     end[l] += first[l];
-  }
-  if (box->is_part && levels == 1) /* leaves of several levels are chosen within the box */
-  {
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT, blocks * MCOR_BLOCK_BRICKS,
-      MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
-      MCOR_CELL_ARGS(box->first, box->last, box->ring), MCOR_BUFFER(&bricks->states),
-      MCOR_BUFFER(&bricks->seed_bits)));
   }
   MCOR_TRY(mcor_copy(
     context, &bricks->seed_bits, &bricks->bits, 0, blocks * MCOR_BLOCK_WORDS * sizeof(cl_uint)));

@@ -63,7 +63,9 @@ int mcor_list_images(
   MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
     MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
 
-/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and `ring` cells around them. */
+/* Kernel arguments of MCOR_BOX_PARAMS: the cells [first, last), and `ring` cells around them. An
+ * endless ring has all cells of the lattice. */
+#define MCOR_ENDLESS_RING (1 << 29)
 #define MCOR_CELL_ARGS(first, last, ring)                                                          \
   MCOR_INT((first)[0] - (ring)), MCOR_INT((first)[1] - (ring)), MCOR_INT((first)[2] - (ring)),     \
     MCOR_INT((last)[0] + (ring)), MCOR_INT((last)[1] + (ring)), MCOR_INT((last)[2] + (ring))

@@ -24,9 +24,9 @@ __kernel void mcor_block_all(
 #if MCOR_OF_FIELD
 /* One work-item = one cube, 32 << level nodes long: cube index[item], or cube `item` if `index` is
  * NULL. Reads the particles that reach the cube. Writes the cube's state: on which sides of the iso
- * value its nodes may be. */
+ * value its nodes may be. A cube without a node of the box's cells is void. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const int* index,
-  __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS,
+  __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS, MCOR_BOX_PARAMS,
   __global uchar* states)
 {
   MCOR_ITEM(item, item < count);
@@ -34,11 +34,13 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 cube = mcor_block_of_key(rungs, keys[i]);
-  mcor_query query =
-    mcor_node_query(&grid, cube * (8 << cube.w), 0, (MCOR_BLOCK_CUBES << cube.w) - 1, 1);
+  const int size = MCOR_BLOCK_CUBES << cube.w;
+  mcor_query query = mcor_node_query(&grid, cube * (8 << cube.w), 0, size - 1, 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
-  states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, &limits);
+  states[i] = mcor_box_reaches(MCOR_BOX_ARGS, cube * size, size)
+    ? (uchar)mcor_seed_state(&grid, &query, &tile, true, &limits)
+    : MCOR_VOID;
 }
 #endif
 

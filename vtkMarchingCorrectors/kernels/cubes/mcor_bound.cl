@@ -89,12 +89,6 @@ typedef struct
   realv weight_size; /* sum of the absolute values of these terms, if terms may be negative */
 } mcor_bound;
 
-mcor_bound mcor_bound_start(void)
-{
-  const mcor_bound bound = { 0, 0, 0, 0, 0, 0 };
-  return bound;
-}
-
 /* Adds the tile's particles to the sums for the query's box. */
 void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mcor_bound* bound)
 {

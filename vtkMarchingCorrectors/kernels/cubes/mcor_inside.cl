@@ -28,8 +28,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 #define MCOR_INSIDE_SHARE 0.5f
 
 /* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries the
- * proof. With several levels, mcor_seed_prove tries it, too. If a work-item evaluates single nodes,
- * mcor_seed_brick tries it. */
+ * proof. If a work-item evaluates single nodes, mcor_seed_brick tries it. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
@@ -149,24 +148,3 @@ int mcor_seed_proof(
   }
   return state;
 }
-
-#if MCOR_PROVES_INSIDE
-/* One work-item = one of `count` slots from `first` on. If the values of the brick's nodes are not
- * known, and `proofs` has no state of the brick, tries the proof, and writes its result to
- * `proofs`. If the proof succeeds, marks all nodes as above and valid. */
-__kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
-  __global ulong* above, __global ulong* valid)
-{
-  MCOR_ITEM(i, i < count && !known[first + i] && proofs[first + i] == MCOR_UNTRIED);
-  const int slot = first + i;
-  const mcor_grid grid = MCOR_GRID;
-  mcor_tile none;
-  mcor_tile_init(&none);
-  proofs[slot] = (uchar)mcor_seed_proof(&grid, bricks[slot], false, &none, iso);
-  if (proofs[slot] == MCOR_ABOVE)
-  {
-    above[slot] = valid[slot] = ~0UL;
-  }
-}
-#endif

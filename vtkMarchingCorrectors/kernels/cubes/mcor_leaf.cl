@@ -159,18 +159,6 @@ mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, in
   return edge;
 }
 
-/* Turns bits of a cell's corners, as in mcor_march_case, into bits of nodes, as in
- * mcor_adaptive_cell.h. */
-uint mcor_leaf_corner_nodes(int corners)
-{
-  uint above = 0;
-  for (int c = 0; c < 8; ++c)
-  {
-    above |= (uint)(corners >> c & 1) << (2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2));
-  }
-  return above;
-}
-
 /* Marks an edge as an edge of used cells. around: the quadrants of the edge in which these cells
  * are, as bits q of mcor_cell_around. */
 void mcor_leaf_mark_edge(const mcor_leaf_edge* edge, uint around, __global uint* quadrants)

@@ -58,7 +58,7 @@ __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int pla
   }
 }
 
-/* One work-item = one slot. Writes to `proofs` the state of the slot's brick, or MCOR_UNTRIED if
+/* One work-item = one slot. Writes to `proofs` the state of the slot's brick, or MCOR_EXAMINE if
  * the brick is no leaf. If the state is certain and the nodes' values are not known, the state
  * decides which nodes are above and valid. */
 __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global const int4* bricks,
@@ -67,7 +67,7 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
 {
   MCOR_ITEM(slot, slot < slot_count);
   const int m = mcor_brick_number(MCOR_BLOCK_ARGS, bricks[slot]);
-  const int state = mcor_has_brick(leaves, m) ? states[m] & MCOR_EXAMINE : MCOR_UNTRIED;
+  const int state = mcor_has_brick(leaves, m) ? states[m] & MCOR_EXAMINE : MCOR_EXAMINE;
   proofs[slot] = (uchar)state;
   if (MCOR_IS_CERTAIN(state) && !known[slot])
   {

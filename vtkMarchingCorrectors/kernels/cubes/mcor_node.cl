@@ -1,9 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes. The host embeds mcor_node_lanes.cl for CPUs, or
- * mcor_node_point.cl for GPUs. Functions that differ between CPUs and GPUs are in these two
- * files. */
+/* Evaluation of the field at nodes. mcor_node_lanes.cl has what differs on CPUs. */
 
 /* Nodes that one work-item evaluates: a whole brick if particles are gathered for many lanes at
  * once. The nodes form groups of MCOR_LANES. */
@@ -18,13 +16,17 @@ typedef struct
   realv s, w, t;
 } mcor_node_sums;
 
-/* Return the group of a work-item's n-th node, and the node's lane in it. */
-int mcor_group_of(int n);
-int mcor_lane_of(int n);
-
-/* Makes the sums at all groups of nodes of a query, which mcor_node_query made. The tile may
- * already hold the query's particles. */
-void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums);
+/* Return the group of a work-item's n-th node, and the node's lane in it. Nodes of a group are close
+ * together: 2 x 2 x MCOR_GROUP_Z nodes, with one lane a single node. */
+#define MCOR_GROUP_Z (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
+int mcor_group_of(int n)
+{
+  return (n >> 1 & 1) | (n >> 3 & 1) << 1 | (n >> 4) / MCOR_GROUP_Z << 2;
+}
+int mcor_lane_of(int n)
+{
+  return (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
+}
 
 /* Adds all particles of a tile to the sums at MCOR_LANES nodes. x, y, z: the nodes, in cubes from
  * the query's origin. */
@@ -53,6 +55,21 @@ void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_s
     }
   }
 }
+
+#if MCOR_LANES == 1
+/* Makes the sums at the node of a query, which mcor_node_query made. */
+void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
+{
+  const real x = (real)(query->low[0] - query->origin[0]) * grid->unit;
+  const real y = (real)(query->low[1] - query->origin[1]) * grid->unit;
+  const real z = (real)(query->low[2] - query->origin[2]) * grid->unit;
+  sums->s = sums->w = sums->t = 0;
+  for (bool begin = true; mcor_tile_next(grid, query, tile, begin); begin = false)
+  {
+    mcor_sums_add(tile, x, y, z, sums);
+  }
+}
+#endif
 
 /* Returns the query for the nodes up to `extent` from node `first` of a brick. share: share of each
  * particle's support that counts. All bricks of a region count positions from the region's first

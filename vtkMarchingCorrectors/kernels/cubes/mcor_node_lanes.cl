@@ -1,20 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: 2 x 2 x 4
- * nodes with 16 lanes, 2 x 2 x 2 with 8 lanes. mcor_node.cl describes the interface. */
-
-#define MCOR_GROUP_Z (MCOR_LANES / 4)
-
-int mcor_group_of(int n)
-{
-  return (n >> 1 & 1) | (n >> 3 & 1) << 1 | (n >> 4) / MCOR_GROUP_Z << 2;
-}
-
-int mcor_lane_of(int n)
-{
-  return (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
-}
+/* Sums at the nodes of a brick, in groups of nodes, see mcor_group_of. */
 
 /* The nodes of a group, in cubes from the query's origin. Weights are made in two steps, see
  * mcor_distance. */
@@ -120,6 +107,8 @@ void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], 
   sums->t = t;
 }
 
+/* Makes the sums at all groups of nodes of a query, which mcor_node_query made. The tile may
+ * already hold the query's particles. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
 {
   const real share = -query->radius;

@@ -34,6 +34,20 @@ typedef struct
     side_flags, side_margin, iso, node_threshold                                                   \
   }
 
+/* Cells from `first` to before `last`, by axis. */
+#define MCOR_BOX_PARAMS                                                                            \
+  const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,     \
+    const int last_z
+#define MCOR_BOX_ARGS first_x, first_y, first_z, last_x, last_y, last_z
+
+/* Whether any of the box's cells has a node in a cube of nodes. node: the cube's first node; size:
+ * the cube's length in nodes. */
+bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
+{
+  return node.x + size > first_x && node.x <= last_x && node.y + size > first_y &&
+    node.y <= last_y && node.z + size > first_z && node.z <= last_z;
+}
+
 /* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Both are set if a value
  * is so close that a mean of such values may round to the other side. One flag stands for
  * MCOR_SIDE_PARTICLES successive sorted particles, so most queries need not read particles. */
@@ -109,7 +123,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
       return state;
     }
   }
-  mcor_bound bound = mcor_bound_start();
+  mcor_bound bound = { 0, 0, 0, 0, 0, 0 };
   int seen = 0;
   for (bool first = true; mcor_tile_next(grid, query, tile, first); first = false)
   {
@@ -168,11 +182,12 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
  * (with several levels, of its leaves), and requests slots for uncertain bricks. Appends the region
  * to the list if it has uncertain bricks. The entries of this call begin at `first`, and are in any
  * order. list_count: how many entries each level has. With several levels, a region includes the
- * nodes on its far sides. Bricks above a plane are void. */
+ * nodes on its far sides. Bricks above a plane, and bricks without a node of the box's cells, are
+ * void. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
-  __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
-  __global uint* brick_bits, __global int* list, __global int* list_count)
+  __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, MCOR_BOX_PARAMS,
+  __global uchar* states, __global uint* brick_bits, __global int* list, __global int* list_count)
 {
   MCOR_ITEM(item, item < count);
   const int region = first + item, number = mcor_region_number(region);
@@ -216,17 +231,21 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   {
     state = mcor_seed_state(&grid, &query, &tile, false, &limits);
   }
+  bool uncertain = false;
   for (int b = 0; b < 8; ++b)
   {
     const int m = number + mcor_region_offset(b);
     const int proven = MCOR_ABOVE | (open >> b & 1) * MCOR_OPEN_SIDES;
-    states[m] = (uchar)(!(own >> b & 1) ? MCOR_VOID : inside >> b & 1 ? proven : state);
+    const bool counts = own >> b & 1 &&
+      mcor_box_reaches(MCOR_BOX_ARGS, (brick + mcor_up(b)) * MCOR_BRICK, MCOR_BRICK);
+    states[m] = (uchar)(!counts ? MCOR_VOID : inside >> b & 1 ? proven : state);
     if (states[m] == MCOR_EXAMINE)
     {
       mcor_request_brick(brick_bits, m);
+      uncertain = true;
     }
   }
-  if (state == MCOR_EXAMINE && (own & ~inside))
+  if (uncertain)
   {
     list[first + atomic_inc(list_count + brick.w)] = region;
   }

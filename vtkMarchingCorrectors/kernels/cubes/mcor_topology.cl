@@ -12,16 +12,11 @@
  * tunnels in plain cells; all other ambiguous faces follow the case table. Which faces the field
  * decides depends on the leaves alone, so cells on both sides agree. */
 
-/* The sides of the iso value on which the field may be at a sample, i.e. a point where the field is
- * evaluated. mcor_sample_side returns one of them. */
-#define MCOR_SAMPLE_BELOW 0
-#define MCOR_SAMPLE_ABOVE 1
-#define MCOR_SAMPLE_NONE 2 /* no particle reaches the sample, see mcor_evaluate */
-int mcor_sample_side(real value)
+/* Whether the field at a sample, i.e. a point where the field is evaluated, is above the iso value.
+ * The field is neither above nor below if no particle reaches the sample, see mcor_evaluate. */
+bool mcor_sample_is_above(real value)
 {
-  return value == (real)1e30f ? MCOR_SAMPLE_NONE
-    : value >= 0              ? MCOR_SAMPLE_ABOVE
-                              : MCOR_SAMPLE_BELOW;
+  return value >= 0 && value != (real)1e30f;
 }
 
 /* One work-item = one brick. Reads used cells, node masks and, with leaves of several levels, which
@@ -123,7 +118,7 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
     ulong joined = 0;
     for (ulong rest = *faces; rest; rest &= rest - 1)
     {
-      joined |= mcor_sample_side(value[from++]) == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
+      joined |= mcor_sample_is_above(value[from++]) ? rest & -rest : 0;
     }
     *faces = joined;
     count += (int)popcount(joined);
@@ -262,10 +257,9 @@ __kernel void mcor_topology_agree(const int brick_count, __global const int* bas
   int from = base[slot];
   for (ulong rest = cells[0]; rest; rest &= rest - 1, from += 2)
   {
-    const int side = mcor_sample_side(value[from]);
-    const bool agree = side == mcor_sample_side(value[from + 1]);
-    below |= agree && side == MCOR_SAMPLE_BELOW ? rest & -rest : 0;
-    above |= agree && side == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
+    const real a = value[from], b = value[from + 1];
+    below |= a < 0 && b < 0 ? rest & -rest : 0;
+    above |= mcor_sample_is_above(a) && mcor_sample_is_above(b) ? rest & -rest : 0;
   }
   cells[0] = below;
   cells[1] = above;

@@ -18,13 +18,6 @@
 #define MCOR_FOR_CPU 0
 #endif
 
-/* Prefetches an element. */
-#if MCOR_LANES > 1 && MCOR_FOR_CPU && __has_builtin(__builtin_prefetch)
-#define MCOR_PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
-#else
-#define MCOR_PREFETCH(p)
-#endif
-
 /* Read and write MCOR_LANES elements from p[i] on. Compilers may split vloadn and vstoren into
  * several accesses. */
 #if MCOR_LANES == 1

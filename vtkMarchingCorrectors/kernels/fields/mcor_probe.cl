@@ -67,8 +67,17 @@ void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_point
   mcor_probe_put(points, w, sums, weight_sum, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* mcor_probe_sums, the kernel that calls these functions, is in mcor_probe_lanes.cl and
- * mcor_probe_point.cl. */
+#if MCOR_LANES == 1
+/* One work-item = one group, which is one point. Writes the weight sum at this point, and for each
+ * array the sum of weight times value over the particles. On CPUs, this kernel is in
+ * mcor_probe_lanes.cl. */
+__kernel void mcor_probe_sums(
+  MCOR_GROUP_PARAMS, __global const real4* offset, __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
+{
+  MCOR_GROUP_ITEM(0);
+  mcor_probe_alone(&grid, &query, &points, &reach, weight_sum, MCOR_ATTRIBUTE_ARGS);
+}
+#endif
 
 /* One work-item = one group of points. Writes the gradients of the weight sums, and of the sums of
  * weight times array for at most MCOR_ARRAY_STEP arrays from `first_array` on. The unit of length

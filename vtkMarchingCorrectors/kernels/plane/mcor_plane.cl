@@ -112,13 +112,13 @@ MCOR_ONE_COPY int mcor_plane_emit(const ulong* corners, bool is_plain, const mco
   __global const int* vertex_base, int slot, __global int* to)
 {
   mcor_adaptive_nodes_of nodes = { 0, 0, true };
-  if (is_plain)
-  {
-    nodes.above = mcor_leaf_corner_nodes(mcor_march_case(corners, cell) & 15);
-  }
-  else
+  if (!is_plain)
   {
     nodes = mcor_leaf_cell(leaf, cell);
+  }
+  for (int c = 0; c < 4 && is_plain; ++c)
+  {
+    nodes.above |= (uint)(corners[c] >> cell & 1) << (2 * (c & 1) + 6 * (c >> 1));
   }
   const mcor_plane_ring ring = mcor_plane_ring_of(nodes.split);
   int made = 0;

@@ -37,7 +37,7 @@ static const double mcor_line_weight[MCOR_LINE_POINTS] = { 0.1184634425280945437
 typedef struct mcor_column_job
 {
   mcor_sph_kernel kernel;
-  bool is_plane, is_tensor, is_aligned;
+  bool is_plane, is_aligned;
   const double (*axes)[3];
   double support;
   double profile[MCOR_PROFILE + 4]; /* column density at the places along the axis, beginning one
@@ -92,7 +92,7 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
  * the table. */
 static double mcor_density_at(const mcor_column_job* job, double x, double y)
 {
-  if (job->is_tensor)
+  if (!job->column->is_radial)
   {
     return job->is_plane || job->is_aligned
       ? mcor_w_of(job->kernel, fabs(x)) * mcor_w_of(job->kernel, fabs(y))
@@ -225,14 +225,13 @@ mcor_status mcor_make_column(
   const mcor_sph_kernel kernel = context->run.options->sph_kernel;
   mcor_column_job job = { .kernel = kernel,
     .is_plane = mcor_is_plane(context),
-    .is_tensor = mcor_kernel_of(kernel)->is_tensor,
     .is_aligned = project->is_aligned,
     .axes = project->axes,
     .support = mcor_support_factor(kernel),
     .column = column };
   const int cells = least_pixel < MCOR_SMALL_PIXEL ? MCOR_COLUMN_FINE_CELLS : MCOR_COLUMN_CELLS;
-  *column = (mcor_column){ .is_radial = !job.is_tensor,
-    .is_odd = !job.is_tensor || job.is_plane || job.is_aligned };
+  *column = (mcor_column){ .is_radial = !mcor_kernel_of(kernel)->is_tensor };
+  column->is_odd = column->is_radial || job.is_plane || job.is_aligned;
   column->cells = column->is_odd ? cells : 2 * cells;
   for (int a = 0; a < 2; ++a)
   {
@@ -244,7 +243,7 @@ mcor_status mcor_make_column(
   job.values = malloc((size_t)places * width * sizeof(double));
   column->nodes = malloc(4 * width * width * sizeof(double));
   mcor_status status = mcor_allocated(context, job.sums && job.values && column->nodes);
-  if (status == MCOR_OK && !job.is_tensor && !job.is_plane)
+  if (status == MCOR_OK && column->is_radial && !job.is_plane)
   {
     status = mcor_parallel_run(context, MCOR_PROFILE, 64, mcor_profile_slice, &job, NULL);
     job.profile[0] = job.profile[2];

@@ -140,12 +140,9 @@ static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
       {
         MCOR_TRY(mcor_halve_piece(job, &piece, &is_halved));
       }
-      if (is_halved)
-      {
-        continue;
-      }
-      job->found[piece.section].near += is_near && job->is_counting ? piece.size : 0;
-      if (!is_near || !mcor_owns_point(&job->base, middle))
+      const bool is_cell = is_near && !is_halved;
+      job->found[piece.section].near += is_cell && job->is_counting ? piece.size : 0;
+      if (!is_cell || !mcor_owns_point(&job->base, middle))
       {
         continue;
       }

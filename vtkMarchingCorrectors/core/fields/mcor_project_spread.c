@@ -268,25 +268,12 @@ static mcor_status mcor_count_splats(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Makes the work space of the second pass. */
-static mcor_status mcor_make_brushes(mcor_project_job* job)
-{
-  const size_t corners = MCOR_SLICES * ((size_t)job->out->size[0] + 1);
-  const int bands = job->out->size[1] / MCOR_BAND_ROWS + 1;
-  job->sides = malloc(corners * sizeof *job->sides);
-  job->corners = malloc(2 * corners * sizeof *job->corners);
-  job->locks = malloc((size_t)bands * sizeof *job->locks);
-  for (job->bands = 0; job->bands < bands && job->locks; ++job->bands)
-  {
-    pthread_mutex_init(&job->locks[job->bands], NULL);
-  }
-  return mcor_allocated(job->context, job->sides && job->corners && job->locks);
-}
-
 mcor_status mcor_spread_particles(mcor_project_job* job)
 {
   mcor_projection* out = job->out;
-  const size_t pixels = (size_t)out->size[0] * (size_t)out->size[1];
+  const size_t pixels = (size_t)out->size[0] * (size_t)out->size[1],
+               corners = MCOR_SLICES * ((size_t)out->size[0] + 1);
+  const int bands = out->size[1] / MCOR_BAND_ROWS + 1;
   const int64_t particles = job->input->count;
   const double least_pixel =
     fmin(out->pixel[0], out->pixel[1]) / (out->statistics.smoothing_length_max * job->h_scale);
@@ -295,7 +282,15 @@ mcor_status mcor_spread_particles(mcor_project_job* job)
   MCOR_TRY(mcor_allocated(job->context, out->values && job->sums));
   MCOR_TRY(mcor_make_column(job, least_pixel, &job->column));
   MCOR_TRY(mcor_count_splats(job));
-  MCOR_TRY(mcor_make_brushes(job));
+  /* Makes the work space of the second pass. */
+  job->sides = malloc(corners * sizeof *job->sides);
+  job->corners = malloc(2 * corners * sizeof *job->corners);
+  job->locks = malloc((size_t)bands * sizeof *job->locks);
+  for (job->bands = 0; job->bands < bands && job->locks; ++job->bands)
+  {
+    pthread_mutex_init(&job->locks[job->bands], NULL);
+  }
+  MCOR_TRY(mcor_allocated(job->context, job->sides && job->corners && job->locks));
   for (int64_t end; job->first < particles; job->first = end)
   {
     const double share = 0.7 / (double)particles;

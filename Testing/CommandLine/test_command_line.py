@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests the program marching-correctors: test_command_line.py PROGRAM PRELOAD [unittest arguments].
 
-Other tests check what the program computes. This test checks files, options, sentences and exit statuses.
+Other tests check what the program computes. This test checks files, options, messages and exit statuses.
 """
 import json
 import os
@@ -70,7 +70,7 @@ class Usage(CommandLineTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
 
     def test_modes_as_first_words(self):
-        """A mode as the first word changes no output. If the command line lacks what the mode needs, a sentence says what. Without a scalar,
+        """A mode as the first word changes no output. If the command line lacks what the mode needs, an error says what. Without a scalar,
         the mode `surface` makes the free surface."""
         self.run_good(self.input, "a.vti", "--slice", "z=0", "--resolution", "9")
         self.run_good("slice", self.input, "b.vti", "--slice", "z=0", "--resolution", "9")
@@ -188,7 +188,7 @@ class Usage(CommandLineTest):
 
 
 class BadData(CommandLineTest):
-    """Tests bad data, files and devices, which have exit status 1 and a sentence of their own."""
+    """Tests bad data, files and devices, which have exit status 1 and an error message of their own."""
 
     def refuse_with(self, sentence, *options, **extract_options):
         self.refuse(self.extract(*(options or ISO), **extract_options), 1, sentence)

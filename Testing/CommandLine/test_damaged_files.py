@@ -41,7 +41,7 @@ def mutated(data, rng):
 
 
 class DamagedFiles(CommandLineTest):
-    """Tests that a damaged file is read or refused: the exit status is 0 or 1, and there is at most one sentence."""
+    """Tests that a damaged file is read or refused: the exit status is 0 or 1, and there is at most one message."""
 
     def setUp(self):
         super().setUp()
@@ -125,7 +125,7 @@ class DamagedFiles(CommandLineTest):
                             rf"\({why}\); the file may be damaged$")
 
     def test_crash_of_a_driver(self):
-        """A driver may crash in every run, as PoCL does if a file in its cache is damaged. The sentence names the cache's folder."""
+        """A driver may crash in every run, as PoCL does if a file in its cache is damaged. The error message names the cache's folder."""
         drivers, kept = self.directory / "drivers", self.directory / "kept"
         drivers.mkdir()
         kept.mkdir()

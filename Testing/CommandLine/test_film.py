@@ -252,7 +252,7 @@ class Film(CommandLineTest):
         self.assertEqual([t for t, _ in self.listed()], [0.1, 0.3, 0.35])
 
     def test_crash_of_the_reader(self):
-        """If a step fails, a sentence names its file, and the surfaces of earlier steps are listed."""
+        """If a step fails, the error names its file, and the surfaces of earlier steps are listed."""
         paths = self.write_steps(3)
         result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault", reader_call=2))
         if result.returncode == 0:

@@ -297,8 +297,8 @@ class Flux(Meter):
 
 
 class Volumes(CommandLineTest):
-    """Tests the particles' volumes by the level of a block of 10 x 10 x 10 particles around the origin. The block's surface is half a
-    spacing beyond the particles."""
+    """Tests from what volumes are computed: with right volumes, the surface of a block of 10 x 10 x 10 particles around the origin is
+    half a spacing beyond the particles."""
 
     def level(self, *options, arrays=()):
         """Returns the level, in spacings above the uppermost particles, and what the program tells about volumes."""
@@ -323,7 +323,7 @@ class Volumes(CommandLineTest):
                 self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
 
     def test_spray(self):
-        """A lone particle has a surface only if its volume is computed or large, or the iso value low. A run tells how many particles
+        """A lone particle has a surface only if its volume is computed or large, or the iso value is low. A run tells how many particles
         would have no surface if each were alone."""
         points, table = [*self.points, (0.0, 0.0, 2.0)], self.directory / "pieces.csv"
         files.write_vtp(self.input, points, {"Volume": [DX ** 3] * len(points), "One": [DX ** 3] * (len(points) - 1) + [10 * DX ** 3]})

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tries every option of the program in every mode: the option changes the outputs, or one sentence refuses it.
+"""Tries every option of the program in every mode: the option changes the outputs, or one error message refuses it.
 
 test_modes.py PROGRAM PRELOAD [unittest arguments]; writes options_in_modes.csv, a row for each option and a column for each
 mode, to the folder that it runs in.

@@ -262,8 +262,8 @@ static int modules_flux(mcor_context* context, const mcor_input* input)
   return good;
 }
 
-/* Makes a tank along x: three blocks of spacing 1, 2 and 4 on a layer of solids. The fluid's top slopes and is rough.
- * The tank is 32 wide along y, its period in some runs. libm is not used, so that the bits are the same everywhere. */
+/* Makes a tank along x: three blocks of spacing 1, 2 and 4, whose lowest layers are solids. The fluid's top slopes and
+ * is rough. The tank is 32 wide along y; if `flat`, all y are 2. No libm is used, so bits are the same everywhere. */
 static particle_set tank_set(bool flat)
 {
   particle_set set = particle_set_make(5000);

@@ -195,8 +195,8 @@ class Program(unittest.TestCase):
             self.assertEqual(said[0], said[1])
 
     def test_particle_distance(self):
-        """The particles of all processes together decide the dimension. First the particles lie in two planes; then those in
-        the second plane are ignored walls."""
+        """The particles of all processes together decide the dimension. First the particles lie in two planes; then the
+        particles in the second plane are walls, which are ignored."""
         plane = read(self.write_plane())
         at = vtk_to_numpy(plane.GetPoints().GetData())
         at[:, 2] = np.where(np.arange(len(at)) < len(at) // 2, 0.5, 0.6)

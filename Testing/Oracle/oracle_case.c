@@ -112,8 +112,8 @@ static void case_check_mesh(case_run* run)
   CASE_EXPECT(run, c->holes == 0, c->holes, c->first);
 }
 
-/* Checks a periodic box: the surface must meet itself at the sides. It may end there only for the reasons that end it
- * elsewhere. */
+/* Checks that a periodic surface continues from each side of the period at the opposite side, with equal points. It may
+ * end at a side only if its boundary flags say so. */
 static void case_check_seam(case_run* run)
 {
   if (!oracle_is_periodic(&run->options))

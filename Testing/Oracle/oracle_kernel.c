@@ -12,7 +12,7 @@ double oracle_support(oracle_kernel kernel)
   return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : kernel == ORACLE_QUARTIC_SPLINE ? 2.5 : 2.0;
 }
 
-/* Integrates over r from 0 on by Simpson's rule, with the factor r^(d - 1) of a sphere or circle. M'4 is a product of
+/* Integrates W and r^2 W by Simpson's rule, with the factor r^(d - 1) of a sphere or circle. M'4 is a product of
  * functions of x, y and z, so one axis is enough. */
 double oracle_kernel_variance(oracle_kernel kernel, int dimensions)
 {
@@ -72,7 +72,7 @@ static double oracle_spline(
   return value / (norm * ORACLE_PI);
 }
 
-/* Returns (1 - u)^power times a polynomial of u = r / support radius, as Dehnen and Aly (2012) write it. */
+/* Returns norm / pi (1 - u)^power times a polynomial of u = r / support radius, as Dehnen and Aly (2012) write it. */
 static double oracle_wendland(
   int power, const double factor[4], double norm, double q, double* slope)
 {

@@ -98,7 +98,7 @@ extern "C"
     lattice_edge* edges;
     lattice_segment* segments; /* of valid cells, without loops of two */
     /* Pairs of edges on a face, the lower number first. doubts: pairs in cells that rounding may make valid or not.
-     * either: pairs that rounding may join or not. The map's value is the number of valid cells at the face. */
+     * either: pairs that rounding may join or not. Their values are the numbers of valid cells at the face. */
     oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;
@@ -116,8 +116,8 @@ extern "C"
     double margin; /* |weight - threshold| up to which a node is excused */
   } oracle_limits;
 
-  /* Decides topology by the field: how an ambiguous face between two plain cells is joined depends on the field at the
-   * saddle point of the face. */
+  /* Decides topology by the field: how an ambiguous face between two plain cells (oracle_is_plain) is joined depends on
+   * the field at the saddle point of the face. */
   typedef struct oracle_decider
   {
     const oracle_field* field;

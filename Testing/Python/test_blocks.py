@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests composite data: blocks that are one set of particles, and blocks apart, each by itself. If blocks are apart, the output has each block's
-surface in the block's place, and sentences name the block."""
+surface in the block's place, and messages name the block."""
 import unittest
 
 import numpy

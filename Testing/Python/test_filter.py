@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests vtkMarchingCorrectors: points against brute force; arrays, their names and types, field data, statistics; what it tells before a run.
+"""Tests vtkMarchingCorrectors: points against brute force; arrays, their names and types, field data, statistics; what the filter tells before a run.
 test_input.py tests its input."""
 import math
 import unittest

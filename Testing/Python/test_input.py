@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests input of all kinds. Odd input comes first: it gives an empty output and one sentence, and the filter works again afterwards. Then come arrays
+"""Tests input of all kinds. Odd input comes first: it gives an empty output and one message, and the filter works again afterwards. Then come arrays
 and point sets of any kind, and what the filter finds if nothing is named."""
 import math
 import unittest

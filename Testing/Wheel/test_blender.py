@@ -123,7 +123,7 @@ class Blender(unittest.TestCase):
         np.testing.assert_array_equal(numbers(thing.data, "position", 3), self.surface_of(5).points.astype("f4"))
 
     def test_errors(self):
-        """An import that fails reports a sentence. After an import, the sentence of an error stands in the panel."""
+        """An import that fails reports an error. If a later change of a setting causes an error, the panel shows its message."""
         with self.assertRaisesRegex(RuntimeError, "no file"):
             bpy.ops.import_scene.sph_particles(filepath=str(FOLDER / "none.vtp"))
         thing = self.import_steps(3)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""marchingcorrectors.io: a damaged, empty or hostile file gives one sentence and nothing else, and no code in it is run."""
+"""marchingcorrectors.io: a damaged, empty or hostile file gives one error message and nothing else, and no code in it is run."""
 import gzip
 import os
 import subprocess
@@ -21,7 +21,7 @@ from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, wr
 
 def write_vtk(path, kind="", version=0):
     """Writes a file by VTK. With a version: a .vtk file of an unstructured grid, as SPlisHSPlasH does; kind is "text", or "" for binary.
-    With a kind alone: a .vtp file with this compressor; LZ4's data are base64, others' raw bytes. Else the path tells the format."""
+    With a kind alone: a .vtp file with this compressor; data are base64 for LZ4, else raw bytes. Else the path tells the format."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     if version:

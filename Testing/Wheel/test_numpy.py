@@ -253,8 +253,8 @@ class Inputs(unittest.TestCase):
 
 class Refused(unittest.TestCase):
     def check(self, error, *cases, call=sphere, **common):
-        """Checks calls that fail. Each of `cases` is a sentence, followed by dictionaries of keywords; a call with each
-        of these fails with the sentence."""
+        """Checks calls that fail. Each of `cases` has a pattern of the message, followed by dictionaries of keywords; a call
+        with any of these dictionaries must fail with this message."""
         for sentence, *several in cases:
             for words in several:
                 with self.subTest(str(words)[:80]), self.assertRaisesRegex(error, sentence):

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests the plugin that is written in Python, in ParaView's pvpython. Its filter: the panel's properties, a surface, a sentence.
-Its reader: files of solvers, known by their endings, and a series as time steps, which the filter follows.
+"""Tests the plugin that is written in Python, in ParaView's pvpython. The filter must have the panel's properties, make
+a surface, and be empty for a wrong array name. The reader must know solvers' files by their endings, and give the filter all steps
+of a series.
 
     test_paraview.py FOLDER_OF_THE_ENVIRONMENT
 """

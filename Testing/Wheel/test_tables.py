@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests marchingcorrectors.io with tables, .xyz, dumps of LAMMPS, GADGET's binary formats and films in .vtkhdf. Random files are compared with
-NumPy's reading of the same bytes. Damaged files must give a sentence."""
+NumPy's reading of the same bytes. Damaged files must give an error message."""
 import gzip
 import os
 import re

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Tests surfaces of adaptive cubes: surfaces with one level equal surfaces of uniform cubes, and few nodes are
- * evaluated. In other tests, the oracle checks edges and triangles, core_adaptive_parts the bits of boxes, and
- * core_warning particles of very different sizes. */
+ * evaluated. The oracle's tests check edges and triangles. core_adaptive_parts tests boxes, and core_warning tests
+ * particles of very different sizes. */
 
 #include "core_fixture.h"
 
@@ -26,9 +26,8 @@ static void one_level_is_uniform(void** state)
   assert_true(core_hash(&adaptive) == core_hash(&uniform) && uniform.point_count > 100);
 }
 
-/* The upper half of the lattice has values above iso, the lower half below. Nodes are evaluated only between the halves
- * and where the weight is low. In leaves that certainly lie on one side, only nodes next to a crossed edge are
- * evaluated. */
+/* The upper half of the lattice has values above iso, the lower half below. At most 38 of a leaf's 64 nodes, on
+ * average, may be evaluated: a leaf that certainly lies on one side needs only its nodes next to a crossed edge. */
 static void few_nodes_are_evaluated(void** state)
 {
   static const double iso = 0.1;

@@ -151,7 +151,7 @@ static void check_box(const particles* p, const mcor_options* options, double is
 }
 
 /* Returns box b. Boxes have several sizes and lie all over the lattice. The first 32 boxes hold a particle, or a place
- * 4/3 h from a particle, where M'4 is lowest. */
+ * 4/3 h away from a particle along x or along each axis, where M'4 is negative. */
 static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, uint64_t* seed)
 {
   static const int sizes[] = { 3, 7, 3, 31 };

@@ -111,8 +111,8 @@ static int crossed_edges(int cube_case)
   return count;
 }
 
-/* Checks ambiguous faces: one side of a triangle cuts off each corner above iso or, if the corners above are joined,
- * each corner below. */
+/* Checks ambiguous faces. A bit of `joined` says that a face joins its corners above iso. On such a face, one triangle
+ * side must cut off each corner below iso; on any other face, each corner above. */
 static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
 {
   uint8_t side[24][24] = { { 0 } };
@@ -239,8 +239,8 @@ static void test_first_rows(void** state)
 
 /* ---- cells beside finer ones ---- */
 
-/* Checks a side that two triangles of a cell share. It may not lie within one part of a face, because the cell beyond
- * the face could have the same side; it may if both triangles lie flat in the face. Places are in half cells. */
+/* Checks side a, b of the triangles a, b, c and b, a, d of one cell. If the side lies in a face, or in one quarter of a
+ * divided face, both triangles must lie in it: else the cell beyond could have this side. Unit: half cells. */
 static void check_inner_side(
   const double* a, const double* b, const double* c, const double* d, uint32_t split)
 {

@@ -98,8 +98,8 @@ static void check_line(marked_cells* m, const double p[3], const double q[3], do
   }
 }
 
-/* Extracts with pair seeds. Checks the lines of all pairs of particles with values above and below 0 that are closer
- * than the smoothing length of one of the two. */
+/* Extracts with MCOR_PAIRS. Two particles are a pair if only one scalar is below 0, and their distance is below the
+ * larger of their smoothing lengths. Exactly the cells that the lines between pairs cross must be marked. */
 static void check_pairs(mcor_context* context, const particle_set* set, double cube)
 {
   const double iso = 0;
@@ -138,7 +138,7 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   free(m.cell);
 }
 
-/* Checks the line of a single pair: along axes, through edges and corners of cells, within one cell, and at random. */
+/* Checks one pair at a time; its line is along an axis, through edges or corners of cells, in one cell, or random. */
 static void test_line(void** state)
 {
   static const double ends[][6] = { { 0.5, 0.5, 0.5, 17.5, 0.5, 0.5 },

@@ -70,7 +70,7 @@ static int64_t count_parts(mcor_context* context, const particle_set* set, doubl
 static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, { -3, 0, 3 },
   { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
 
-/* With topology by the field, a thread stays whole and balls that do not touch stay apart, above or below iso, as on a
+/* With MCOR_TOPOLOGY_FIELD, a thread stays whole and balls that do not touch stay apart, above or below iso, as on a
  * fine lattice. The case table always joins nodes below across a face, and keeps nodes above apart. The expected
  * numbers are counted by hand: ambiguous faces (the face that the diagonal crosses, between two cells); faces whose
  * nodes above are joined; cells with two loops; tunnels. */

@@ -281,8 +281,8 @@ static double flat(const double x[3])
   return x[2];
 }
 
-/* Lets calls fail in a run with attributes, topology by the field, weight and boundary eigenvalue, and seeds by pairs
- * that grow. */
+/* Lets calls fail in a run with MCOR_PAIRS and MCOR_TOPOLOGY_FIELD that also writes an attribute, the boundary
+ * eigenvalue and the nearest particles. */
 static void test_every_call_fails_once(void** state)
 {
   mcor_context* context = *state;

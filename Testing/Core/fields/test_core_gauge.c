@@ -233,7 +233,7 @@ static void test_still_pool_of_computed_volumes(void** state)
   }
 }
 
-/* A gauge beyond a side of the period must read the fluid's image there; with these numbers no bit differs. */
+/* A gauge beyond a side of the period must read the fluid's image there. All shifts are exact, so no bit differs. */
 static void test_period(void** state)
 {
   CORE_SET set = make_pool(1);
@@ -272,7 +272,7 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Particles on a line tell no plane, so they are measured in space. */
+/* Particles on a line define no plane, so they are measured in space. */
 static void test_particles_on_a_line(void** state)
 {
   CORE_SET set = make_pool(0);

@@ -534,7 +534,7 @@ static void test_bad_input(void** state)
     CORE_CHECK(status == cases[i].status && *mcor_last_error(*state), i, mcor_status_name(status));
     assert_true(!found.values && found.size[0] == 0);
   }
-  /* Solids alone give no image, with a period or without. No particles in a box give zeros. A particle that is not
+  /* Solids alone give no image, with a period or without. A box without particles gives zeros. A particle that is not
    * counted adds nothing. */
   CORE_SET set = core_make_block(3, 0.1, 2, core_slope);
   mcor_input input = input_of(&set);

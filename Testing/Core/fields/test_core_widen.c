@@ -50,9 +50,9 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* Returns the factor of particle j's smoothing length: the widest of 1, 1.2, ... 2 whose weight sum exceeds iso by a
- * margin, plus a part of the way to the next one; nearer to 1 if j has few neighbours. If few neighbours lie all on one
- * side, the margin is larger; if many do, the sum may stay below iso. *one_sided: 1 if many do, 0 if few or none do. */
+/* Returns the factor of particle j's smoothing length: the largest of 1, 1.2, ... 2 at which j's weight sum exceeds iso
+ * by a margin, plus part of the step to the next. Few neighbours bring it near 1. If all are on one side, the margin is
+ * larger for few, and may be negative for many. *one_sided: 1 for many on one side, 0 for few, or on all sides. */
 static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };

@@ -474,7 +474,7 @@ static void test_computed_volumes(void** state)
   expect_good(*state);
 }
 
-/* Checks that positions times 2^-300 and 2^300 give the same surface, equally scaled, with the same normals by
+/* Checks that positions times 2^-300 and 2^300 give the same surface, equally scaled, with the same normals of its
  * triangles. Smoothing lengths are estimated. More extreme factors must be refused. */
 static void test_units_of_length(void** state)
 {

@@ -139,7 +139,7 @@ static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
   return same;
 }
 
-/* Makes random lines. Every third leads along `axis` through all boxes, one through several periods, one is outside. */
+/* Makes random lines. Every third one is along `axis` through all boxes; line 1 crosses periods; line 2 is outside. */
 static void make_lines(mcor_gauge_line* lines, int axis)
 {
   uint64_t seed = 11;

@@ -93,7 +93,7 @@ static void pairs_grow_around(void** state)
   check_images(*state, "pairs", &set, &options);
 }
 
-/* Sets smoothing lengths that grow with the distance from one place: height `middle` on the period's edge along z. */
+/* Sets smoothing lengths that grow, up to `most`, with the distance from the nearest image of (0, 0, middle). */
 static void grade_lengths(particle_set* set, double side, double middle, double most)
 {
   for (int64_t p = 0; p < set->count; ++p)
@@ -210,7 +210,7 @@ static void lengths(void** state)
 }
 
 /* Checks adaptive cubes that have a different edge along each axis. The surface must be closed except at the sides,
- * where each point must have a partner. Residuals must be below 1e-5, and the area within 2 % of that with uniform cubes. */
+ * where each point must have a partner. Residuals must be below 1e-5, the area within 2 % of uniform cubes' area. */
 static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests particles in a plane: kernels, weights, what counts as a plane, derivatives and gauges, kept data, bits.
- * test_core_plane_lines compares lines. */
+/* Tests particles in a plane: kernels, weights, what counts as a plane, derivatives, gauges, data kept between calls,
+ * and that the particles' order changes no bit. test_core_plane_lines compares lines. */
 
 #include "mcor_plane.h"
 #include "plane_reference.h"
@@ -152,8 +152,8 @@ static void test_rounded_plane(void** state)
   }
 }
 
-/* Messages name the caller's axes, not the turned ones. A flat box around the particles is still a
- * box. */
+/* Messages name the caller's axes, though the core turns the plane. A box of no thickness cuts out
+ * nothing if it holds the plane, and everything if it lies beside the plane. */
 static void test_sentences_of_sides(void** state)
 {
   CORE_SET set = plane_make(10, 0.1, 1, 1, 1, 7);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests normals by triangles, attributes, nearest particles. The oracle checks normals by the field, and gradients. */
+/* Tests attributes, nearest particles, and normals from triangles. The oracle checks gradients and their normals. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"

@@ -150,8 +150,8 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* Returns whether a flagged vertex, at a place without an expected crossing, is a cut. close: rounding decides whether
- * there is a crossing; the vertex is then a cut only if its weight is the threshold or it was cut linearly (flag 2). */
+/* Returns whether trimming made a vertex that lies at no expected crossing: its boundary flag says so. If rounding
+ * decides whether a crossing is here (close), the flag must be 2 (placed linearly), or the vertex on a trimming limit. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;
@@ -166,8 +166,8 @@ static int compare_is_cut(const compare_state* state, int64_t v, int close)
     surface->boundary_flag[v] == 2;
 }
 
-/* Judges a vertex that could not be matched with a crossed edge: it is a cut, a second vertex on its edge, excused by
- * rounding, or one vertex too many. */
+/* Judges a vertex that could not be matched with a crossed edge: trimming made it, rounding excuses it, or it is a
+ * fault (off the lattice, the second vertex on its edge, or on an edge that is not crossed). */
 static void compare_unmatched(compare_state* state, int64_t v, int axis)
 {
   const double* point = &state->surface->points[3 * v];
@@ -325,8 +325,8 @@ static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
   return value ? *value : -1;
 }
 
-/* Checks segments, which lead from one crossed edge to another on a cell's face: each must be a side of one triangle
- * for each cell that has the segment, in the same direction. */
+/* Checks the oracle's segments. A segment leads from one crossed edge to another on a cell's face. For each cell that
+ * has the segment, exactly one triangle must have a side with the segment's ends and direction. */
 static void compare_segments(compare_state* state, oracle_map* wanted, oracle_map* sides)
 {
   const oracle_lattice* lattice = &state->reference->lattice;

@@ -135,7 +135,7 @@ public:
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
    * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if a setting
-   * has no effect, or if there is no fluid; consequence: what the warning says to follow from this.
+   * has no effect. Warns if there is no fluid, and names the `consequence`, such as "no surface".
    * Returns false, after an error, if an array is not usable. Does nothing without particles.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);

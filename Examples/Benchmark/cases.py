@@ -13,7 +13,6 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 
 def medians(rows):
-    """Returns the median of each column."""
     return [statistics.median(column) for column in zip(*rows)]
 
 
@@ -309,7 +308,8 @@ def project(benchmark):
 
 
 class Walls:
-    """Holds the bounding box of the solids, which is the tank; and the box around the solids inside the tank, an obstacle; y is up."""
+    """Finds the tank and the obstacle in it; y is up. The tank is the bounding box of all solids. The obstacle is the bounding box of the
+    solids farther than h from the tank's sides, and stands on the tank's floor; there may be none."""
 
     def __init__(self, solid, h):
         self.low, self.high = solid.min(axis=0), solid.max(axis=0)

@@ -81,7 +81,7 @@ def measure(scene, x, points, triangles):
 
 
 def times(benchmark):
-    """Writes a table of the processor seconds of whole runs: medians, and their ratio to the median of "as it is"."""
+    """Writes a table of the processor seconds of whole runs: for each row the median, and its ratio to the median of the row "as it is"."""
     path, taken = benchmark.files[0], {}
     for _ in range(benchmark.runs):
         for name in ("as it is", "--compact", "--smooth"):

@@ -175,7 +175,7 @@ def dam_break():
         ("isosurface of the speed, 1 m/s", actor_of(iso, ORANGE, specular=0.3), faint)], README, (24, 474), 28), (1950, 520)
 
 
-# Each panel has a text and surfaces. A surface has an array, or None for the free surface, its value, colour, opacity, and the scale of h.
+# Each panel has a text and surfaces. A surface is a tuple: array (None: the free surface), iso value, colour, opacity, factor of h.
 FIGURES = {
     "figure_1": (TANK[1], [("pressure 500, 1500, 3000 Pa in the free surface", ("Pressure", 500.0, RED), ("Pressure", 1500.0, YELLOW),
                             ("Pressure", 3000.0, GREEN), (None, 0, WATER, 0.25))]),

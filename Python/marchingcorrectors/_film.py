@@ -225,12 +225,12 @@ SPRAY_WORDS = ("smoothing_length", "volume", "mass", "density", "solid", "fluid"
 
 
 def take_spray(surface, particles, words, iso, least, velocity=None):
-    """Returns the surface without the pieces that small_pieces() finds, and the spray: the fluid particles of these pieces, and
-    fluid particles where the sum of the weights is below `iso`. A particle that is nearest to a point of a piece that stays is no
-    spray, even if its sum is below `iso`, as at the tip of a piece.
+    """Returns the surface without its small pieces, see small_pieces(), and the spray. Spray is the fluid particles of the small
+    pieces, and fluid particles where the sum of the weights is below `iso`. If a particle is the nearest one to a point of a remaining
+    piece, it is no spray, even if its sum is below `iso`, as at the tip of a piece.
 
-    words: the keywords, with nearest_particle, by which free_surface() made the surface. least: of small_pieces(). velocity: the name of
-    the array of velocities, or None.
+    words: the keywords of the call of free_surface() that made the surface, with nearest_particle=True. least: pieces with fewer particles
+    are small. velocity: the name of the array of velocities, or None.
     """
     if surface.line_offsets is not None:
         raise InvalidArgument("Spray is for three dimensions; leave --spray out.")

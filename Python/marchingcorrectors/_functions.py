@@ -297,9 +297,9 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     resolution: pixels along the longer side of the image.
     weighted_by: (particles,): the image is the scalar's mean with these weights, such as the masses. NaN where there is
         nothing.
-    box: (x0, x1, y0, y1, z0, z1): what is seen; sides may be infinite. If the lines of sight
-        are along x, y or z, a particle counts with its whole kernel if its position along them is in the box. By default
-        the period, or all that particles reach.
+    box: (x0, x1, y0, y1, z0, z1): what is seen; sides may be infinite. By default the period, or
+        all that particles reach. A particle counts, with its whole kernel, if its position is in the box; if the lines of
+        sight are along x, y or z, only the position along this axis must be in the box.
 
     The other arguments are those of isosurface().
 

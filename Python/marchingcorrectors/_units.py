@@ -74,7 +74,7 @@ class Units:
 
 
 def scalar_and_iso(scalar, scalar_dot, iso):
-    """Returns the three as plain numbers. The iso value is in the unit of the scalar, or of the dot product."""
+    """Returns the three arguments as plain numbers. iso is then in the unit of the scalar, or of the dot product."""
     unit, other = unit_of(scalar), unit_of(scalar_dot)
     if scalar_dot is not None and (unit is None) != (other is None):
         convert(scalar_dot, unit, "second vector of the dot product", "scalar")  # This call raises the refusal.

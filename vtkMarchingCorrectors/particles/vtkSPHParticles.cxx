@@ -27,7 +27,6 @@ std::string Filled(const mcor_message& message)
   return vtkSPHTakeText(mcor_fill_slots(message.text, vtkSPHWord, nullptr));
 }
 
-/** Returns a copy of an array that the core made. */
 vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
 {
   const bool isFloat = made.type == MCOR_ELEMENT_FLOAT32;

@@ -53,9 +53,9 @@ struct vtkSPHWanted
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
- * Writes the detected fluid into the choice or, into UnusedType, a sentence about an array that
- * seems to mark fluid but is not used. Writes the array to contour into `first` if `first` is not
- * null and has no name. Collective.
+ * Unless the choice names an array as the fluid's, finds the array and the value that mark fluid,
+ * and writes them into the choice. UnusedType becomes a sentence if an array seems to mark fluid but
+ * is not used. `first` becomes the array to contour if it is not null and has no name. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);

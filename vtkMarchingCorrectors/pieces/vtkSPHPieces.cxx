@@ -326,8 +326,8 @@ void vtkSPHPieces::Measure()
   }
 }
 
-// Moves each piece so that its centre is within the period, wherever the lattice's sides are. A
-// centre on the upper side, up to rounding, moves to the lower side.
+// Moves each piece so that its centre is within the period. A centre on the period's upper side, up
+// to rounding, moves to the lower side.
 void vtkSPHPieces::MoveHome()
 {
   std::vector<Shift> moves(this->Pieces.size());

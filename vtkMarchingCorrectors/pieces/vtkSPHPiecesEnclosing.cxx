@@ -20,8 +20,9 @@ using Triple = std::array<double, 3>;
 using Face = vtkSPHPieces::Face;
 
 /**
- * Whether the edge from `a` to `b` extends over y, and the point (y, z) lies below the edge. The
- * result is the same for both triangles at an edge, so no ray slips between them.
+ * Seen along x: whether `y` lies between the y of `a` and the y of `b`, and the point (y, z) lies
+ * below the edge from `a` to `b`. The result is the same if `a` and `b` change places, so no ray
+ * along x slips between two triangles that share the edge.
  */
 bool IsBelow(const double* a, const double* b, double y, double z)
 {

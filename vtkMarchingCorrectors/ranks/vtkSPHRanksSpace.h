@@ -94,7 +94,8 @@ private:
    * tree divides among the `count` ranks from `rank` on.
    */
   bool Reaches(int rank, int count, const double at[3], double radius) const;
-  /** Adds to `found` each of these ranks whose box the cube reaches, see Reaches(). */
+  /** Adds to `found` those of the `count` ranks from `rank` on whose boxes a cube around `at`, or
+   * around an image of `at`, reaches. radius: half of the cube's edge. */
   void AddReached(
     int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 

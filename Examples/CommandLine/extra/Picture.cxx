@@ -108,7 +108,6 @@ View ObliqueView(const Vector& up)
       std::sin(elevation) * up);
 }
 
-/// Returns the view straight onto a slice.
 View ViewOfSlice(const Vector& up, int axis)
 {
   Vector toEye(0.0);

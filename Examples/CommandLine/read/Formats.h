@@ -47,8 +47,8 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Returns the time in the field data (TimeValue, TIME, Time or time) within the first 64 KiB of the file, or nothing.
 /// Points and their arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file);
-/// Looks for the arrays `names`, in this order, in the same field data. Returns the number in the first array that
-/// holds exactly one finite number, or nothing.
+/// Looks for the arrays `names`, in this order, in the field data within the first 64 KiB of the file. Returns the
+/// number in the first array that holds exactly one finite number, or nothing.
 std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::string>& names);
 ///@}
 
@@ -156,8 +156,8 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, ch
 /// names.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
-/// Finds the columns of positions by their names; none if no name fits. Fails if one or two of the three
-/// are missing, unless the table has no other columns.
+/// Finds the three columns of positions by their names; none if no name fits. Fails if only one or two columns are
+/// found, unless the table has no other columns.
 std::vector<std::size_t> FindPositions(const std::string& file, const Table& table);
 
 /// Makes particles from a table. positions: the columns of the positions.

@@ -72,8 +72,8 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Checks the counts that an XML element, and the elements inside it, declare. The number of an array's components is
-/// first multiplied by `points`, the number of points of the last piece.
+/// Checks the counts that an XML element, and the elements inside it, declare. A number of components, times `points`,
+/// may be at most `most`. points: the number of points of the last piece.
 void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
   for (int i = 0; i < element->GetNumberOfAttributes(); ++i)

@@ -58,7 +58,7 @@ public:
   /// Returns the whole surface on the first process, null on others.
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
 
-  /// Returns the particles of all processes, in their order, on the first process.
+  /// Returns the particles of all processes, in the order of processes, on the first process.
   virtual Particles Append(vtkPointSet* particles) { return particles; }
 
   Job& Options;

@@ -22,8 +22,8 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Unless a range was given, widens the range by the values on most of this data set's area (by all
-  /// values of an array of cells), so that a film's colours cover all steps so far. Throws
+  /// Unless a range was given, widens the range so that it has the values on most of this data set's area
+  /// (all values of an array of cells). A film's colours thus cover all steps so far. Throws
   /// std::runtime_error if the data set has points, but the array to colour by is missing or holds texts.
   void Include(vtkDataSet* data);
 

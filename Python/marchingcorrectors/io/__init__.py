@@ -135,8 +135,8 @@ def read_pieces(path):
 
 
 def reader_of(path):
-    """Returns the file's entry of READERS, or None. The ending of its name decides, with two exceptions: a file may begin like a
-    dump of LAMMPS, and a .xyz file without a count is a table."""
+    """Returns the file's entry of READERS, or None. The ending of the file's name decides, with two exceptions: a file that begins
+    like a dump of LAMMPS is a dump, and a .xyz file without a count is a table."""
     ending = ending_of(path)
     head = read_head(path) if path.is_file() and (ending in PACKED or ending not in READERS) else b""
     if head.startswith(b"ITEM:"):

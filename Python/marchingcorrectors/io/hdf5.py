@@ -18,8 +18,8 @@ KEEP_SIZE = (2, 3)  # These filters of HDF5 do not pack: they shuffle bytes, or 
 
 
 def get(group, place):
-    """Returns a member of a group by its path, or None. Raises FileError for a link, because a file of an attacker could link
-    to any file that the user may read; and for data that lie in other files."""
+    """Returns a member of a group by its path, or None. Raises FileError for a link, and for data that lie in other files,
+    because a file of an attacker could name any file that the user may read."""
     file = os.path.basename(group.file.filename)
     for name in place.strip("/").split("/"):
         link = group.get(name, getlink=True) if isinstance(group, h5py.Group) else None

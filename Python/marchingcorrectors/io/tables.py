@@ -122,8 +122,8 @@ def axes_of(columns, behind=""):
 
 
 def body_of(file, columns, positions=(), unnamed=(), **more):
-    """Makes a Body of a table. positions: the names of the columns of positions. If empty, the columns with usual names are taken,
-    and if there are none, the columns `unnamed`."""
+    """Makes a Body of a table. positions: the names of the columns of positions. If `positions` is empty, the columns with usual
+    names are taken; if no column has a usual name, the columns `unnamed`."""
     arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
     if not positions:
         at = usual([name for name in arrays if arrays[name].ndim == 2 and arrays[name].shape[1] <= 3], "position")

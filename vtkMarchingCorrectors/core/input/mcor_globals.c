@@ -7,7 +7,6 @@
 #include "mcor_plane.h"
 #include "mcor_tree.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 mcor_status mcor_measure_components(

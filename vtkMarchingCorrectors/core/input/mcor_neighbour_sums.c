@@ -171,23 +171,6 @@ static mcor_status mcor_measure_extent(
   return MCOR_OK;
 }
 
-static mcor_status mcor_sort_neighbours(mcor_context* context, mcor_neighbour_job* job)
-{
-  mcor_findings bounds;
-  MCOR_TRY(mcor_measure_extent(context, job, &bounds));
-  const double scale = job->extent > 0 ? ldexp(1, 62) / job->extent : 0;
-  for (int64_t i = 0; i < job->count; ++i)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      const double x = fmin(fmax(job->sorted[i].x[a], bounds.least[a]), bounds.most[a]);
-      job->sorted[i].place[a] = (uint64_t)((x - bounds.least[a]) * scale);
-    }
-  }
-  qsort(job->sorted, (size_t)job->count, sizeof *job->sorted, mcor_compare_neighbours);
-  return MCOR_OK;
-}
-
 static void mcor_make_boxes(mcor_neighbour_job* job)
 {
   for (int64_t n = 2 * job->leaves - 1; n > 0; --n)
@@ -432,7 +415,16 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
       p->x[a] -= length > 0 ? floor((p->x[a] - first) / length) * length : 0;
     }
   }
-  MCOR_TRY(mcor_sort_neighbours(context, job));
+  mcor_findings bounds;
+  MCOR_TRY(mcor_measure_extent(context, job, &bounds));
+  const double scale = job->extent > 0 ? ldexp(1, 62) / job->extent : 0;
+  for (int64_t i = 0; i < 3 * job->count; ++i)
+  {
+    mcor_neighbour* p = &job->sorted[i / 3];
+    const double low = bounds.least[i % 3], high = bounds.most[i % 3];
+    p->place[i % 3] = (uint64_t)((fmin(fmax(p->x[i % 3], low), high) - low) * scale);
+  }
+  qsort(job->sorted, (size_t)job->count, sizeof *job->sorted, mcor_compare_neighbours);
   mcor_make_boxes(job);
   MCOR_FAIL_IF(job->count > 0 && job->eta > 0 && !(job->extent > 0), context, MCOR_INVALID_DATA,
     MCOR_SAY(NEIGHBOURS_AT_ONE_POINT));

@@ -189,8 +189,8 @@ static int run_device(int device, uint64_t expected[])
   return good;
 }
 
-/* Runs the cases on all devices that the OpenCL loader lists, each with the form of the kernels (cpu or gpu) that is
- * its default. */
+/* Runs the cases on all devices, the built-in one first, each with the form of the kernels (cpu or gpu) that is its
+ * default. */
 static int run_devices(void)
 {
   uint64_t expected[sizeof cases / sizeof cases[0]];

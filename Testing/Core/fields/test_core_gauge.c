@@ -194,7 +194,7 @@ static void test_noise(void** state)
 }
 
 /* Checks that computed volumes give the right water level too, though particles near the top lack half of their
- * neighbours: with all kernels but M'4 and usual smoothing lengths, with masses or without, in space and in a plane. */
+ * neighbours: with usual smoothing lengths, all kernels but M'4, masses or none, in space and in a plane. */
 static void test_still_pool_of_computed_volumes(void** state)
 {
   static const struct

@@ -269,8 +269,8 @@ static void test_fluid(void** state)
   refuse(&request, arrays, 4, &found, "NO_SUCH_ARRAY|'Typo'|: Type, IsWall, ptype, WallBlock.");
 }
 
-/* The scalar may be named, chosen as the most suitable of three arrays, or summed. Attributes and the arrays that a
- * flow needs are checked, too. */
+/* The scalar may be named, chosen as the most suitable of three arrays, or summed. Attributes and the arrays that
+ * fluxes need are checked, too. */
 static void test_scalar_and_attributes(void** state)
 {
   const int32_t id[COUNT] = { 3, 1, 2, 0 };

@@ -43,8 +43,8 @@ static void test_names(void** state)
   }
 }
 
-/* Checks that the first array in the core's order gives the period, and that an array that is no
- * period gives none. */
+/* Checks which of several arrays gives the period, that an array that is no period gives none, and
+ * where a period of known length begins. */
 static void test_period_of_field_data(void** state)
 {
   const double bounds[6] = { -1, 1, 0, 0, 0, 0 }, cube = 2, edges[3] = { 2, 0, 4 };

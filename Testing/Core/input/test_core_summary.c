@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the estimate of how many cubes a run has, worked out by hand, and the text on what it
- * used. */
+/* Compares the estimated number of a run's cubes with numbers worked out by hand. Tests the text on
+ * what a run used. */
 
 #include "core_fixture.h"
 

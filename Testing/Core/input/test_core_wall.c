@@ -119,8 +119,7 @@ static particle_set make_small_tank(void)
   return set;
 }
 
-/* Checks that the measured share is the solids' share of the weight at the solids next to the fluid, with any kernel,
- * and also across a period. */
+/* Checks that the measured share equals find_share's, with any kernel, and also across a period. */
 static void test_share(void** state)
 {
   CORE_SET set = make_small_tank();

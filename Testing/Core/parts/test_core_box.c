@@ -90,8 +90,8 @@ static void other_fields(void** state)
   core_check_cuts(*state, "sum, tensor kernel", &input, &options);
 }
 
-/* Checks the nearest particle where one large particle makes the surface. The nearest one is often one of many small
- * particles, whose support ends before the box. */
+/* Checks the nearest particle where one large particle makes the surface. The nearest particle is often one of many
+ * small particles, whose support ends before the box. */
 static void nearest_particles(void** state)
 {
   const double half = 0.5;

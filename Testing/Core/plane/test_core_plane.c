@@ -152,8 +152,8 @@ static void test_rounded_plane(void** state)
   }
 }
 
-/* Messages name the caller's axes, though the core turns the plane. A box of no thickness cuts out
- * nothing if it holds the plane, and everything if it lies beside the plane. */
+/* Messages name the caller's axes, though the core turns the plane. A flat box gives the whole result
+ * if it lies in the particles' plane, and nothing if it lies beside the plane. */
 static void test_sentences_of_sides(void** state)
 {
   CORE_SET set = plane_make(10, 0.1, 1, 1, 1, 7);

@@ -186,7 +186,7 @@ static void test_sides(void** state)
       c.options.box[2 * axis + 1] = INFINITY;
     }
     c.options.capping = where == 1 || where == 2 ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
-    /* A whole period has fluid everywhere. In all other cases lines of a scalar end where the fluid ends. */
+    /* With a period along both axes fluid is everywhere; else lines of a scalar end where the fluid ends. */
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
   }

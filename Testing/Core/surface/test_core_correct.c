@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the correction of vertices: every particle counts, reported numbers, limits, poles. The oracle checks that
- * vertices stay on their edges and are within the tolerance, in fields of any kind. */
+/* Tests the correction of vertices: whether every particle counts, reported numbers, the limit of steps, poles of a
+ * mean. The oracle checks that vertices stay on their edges and are within the tolerance, in fields of any kind. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"

@@ -12,7 +12,7 @@ static double length_of(const double x[3])
   return sqrt(mcor_dot(x, x));
 }
 
-/* Checks normals by triangles: each is the sum of the cross products of the triangles around its point, scaled to
+/* Checks normals from triangles: each is the sum of the cross products of the triangles around its point, scaled to
  * length 1. */
 static void check_triangle_normals(const mcor_surface* surface)
 {
@@ -41,7 +41,7 @@ static void check_triangle_normals(const mcor_surface* surface)
   }
 }
 
-/* Checks that normals by triangles are right and point outwards. */
+/* Checks that normals from triangles are right and point outwards. */
 static void test_triangle_normals(void** state)
 {
   CORE_SET set = core_make_block(10, 0.1, 3, core_ball);

@@ -65,8 +65,8 @@ extern "C"
     int64_t trim_vertices, trim_linear;
     int64_t
       trim_avoidable; /* linear cuts for which an exact one (f = iso, w = threshold) exists within a cube */
-    /* Errors of vertices that trimming placed where the weight is exactly the threshold. If the eigenvalue trims,
-     * "weight" means the eigenvalue, here and in below_threshold. */
+    /* The greatest errors at vertices that trimming placed exactly: of the trimming margin, which should be 0, and of
+     * the value. If the eigenvalue trims, "weight" here and below means the eigenvalue. */
     double trim_weight_error, trim_residual;
     int64_t below_threshold; /* vertices kept although their weight is too low */
     int64_t unsettled;       /* nodes and cells at the surface whose state rounding decides */

@@ -151,7 +151,7 @@ static compare_place compare_find_place(const compare_state* state, const double
 }
 
 /* Returns whether trimming made a vertex that lies at no expected crossing: its boundary flag says so. If rounding
- * decides whether a crossing is here (close), the flag must be 2 (placed linearly), or the vertex on a trimming limit. */
+ * decides whether a crossing is here (close), the flag must be 2 (placed linearly), or the trimming margin be 0. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;

@@ -148,7 +148,7 @@ static double compare_trim_gradient(const compare_state* state, const double poi
 }
 
 /* Returns 1 if damped least-norm Newton steps lead from the point, within one cube, to a place
- * where f = iso and the weight (or the eigenvalue) is the threshold. */
+ * where f = iso and the margin of compare_trim_gradient is 0. */
 static int compare_exact_cut_near(const compare_state* state, const double start[3])
 {
   const oracle_reference* reference = state->reference;

@@ -244,8 +244,9 @@ public:
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
    * fluid, with triangles that share the points of the lines. The other values divide the region
    * into bands. The cell array "BandValue" has a line's iso value, or the iso value at which a
-   * triangle's band begins; the point array "IsoValue" has the same for lines and bands.
-   * Off by default. An update fails if the particles do not lie in a plane.
+   * triangle's band begins. The point array "IsoValue" has a line's iso value at the line's points;
+   * at points between lines, the iso value at which the point's band begins. Off by default. An
+   * update fails if the particles do not lie in a plane.
    */
   vtkSPHFlagMacro(Filled, 0);
 
@@ -265,7 +266,7 @@ public:
   /**
    * How the corners of a cell are connected where their values are ambiguous. TOPOLOGY_TABLE (the
    * default) keeps the higher values apart, and makes no tunnels through cells. TOPOLOGY_FIELD
-   * evaluates the field in such cells, so that bridges and tunnels as thin as a cube are the field's.
+   * evaluates the field in such cells, so that thin bridges and tunnels are where the field has them.
    */
   vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
@@ -362,8 +363,8 @@ public:
    * - CorrectionLength, "CorrectionLength": how far the correction moved the vertex, unit L.
    * - Residual, "Residual": field minus iso value at the vertex, unit of the scalar.
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
-   *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone
-   *   or inside a filled region.
+   *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap but
+   *   not on the surface, or inside a filled region.
    */
   vtkSPHFlagMacro(ComputeNormals, 1);
   vtkSPHFlagMacro(ComputeScalars, 1);

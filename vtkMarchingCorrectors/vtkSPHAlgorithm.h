@@ -516,7 +516,7 @@ private:
   /** Makes a data object of this class, from `like` if `like` has this class. */
   static vtkSmartPointer<vtkDataObject> NewOutput(
     const std::string& className, vtkDataObject* like);
-  /** Finds the six bounds of the fluid or, if `densest`, points on three densest lines; 0: unknown. */
+  /** Finds the six bounds of the fluid or, if `densest` is set, a point on the densest line along each axis; 0: unknown. */
   double* FindNextBounds(bool densest);
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);

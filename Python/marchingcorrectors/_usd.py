@@ -143,7 +143,7 @@ class Film:
             self._save()
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
-        """Returns {name: (type, values)} of `velocities` and of a primvar for each array. of_points: takes a prim's values of an array."""
+        """Returns {name: (type, values)} of `velocities` and of a primvar for each array. of_points: takes an array's values at the prim's points."""
         values = {}
         if velocities is not None:
             values["velocities"] = ("Vector3f", of_points(velocities) / self.slow)
@@ -273,7 +273,6 @@ def _nothing(name, usd):
 
 
 def _to_usd(usd, array):
-    """Returns the array in USD's type `usd`."""
     from pxr import Sdf
 
     empty = getattr(Sdf.ValueTypeNames, usd + "Array").defaultValue

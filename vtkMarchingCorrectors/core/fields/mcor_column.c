@@ -21,8 +21,8 @@
 #define MCOR_KINK 0.5
 #define MCOR_KINKS 16 /* room for the kinks on a line of sight through a tensor kernel */
 
-/* Gauss quadrature from 0 to 1: MCOR_CELL_POINTS for a cell; MCOR_LINE_POINTS for one piece of a
- * line of sight, exact for products of three cubic polynomials. */
+/* Gauss quadrature from 0 to 1, with MCOR_CELL_POINTS points in a cell, and MCOR_LINE_POINTS points
+ * in a piece of a line of sight, which is exact for products of three cubic polynomials. */
 #define MCOR_CELL_POINTS 4
 static const double mcor_cell_at[MCOR_CELL_POINTS] = { 0.069431844202973712388,
   0.33000947820757186760, 0.66999052179242813240, 0.93056815579702628761 };
@@ -40,8 +40,7 @@ typedef struct mcor_column_job
   bool is_plane, is_aligned;
   const double (*axes)[3];
   double support;
-  double profile[MCOR_PROFILE + 4]; /* column density at the places along the axis, beginning one
-                                     * step before the centre */
+  double profile[MCOR_PROFILE + 4]; /* column density at r = (index - 1) support / MCOR_PROFILE */
   mcor_column* column;
   double* sums;   /* [places along x][cells + 1]: integral of `values` along y */
   double* values; /* [places along x][cells + 1]: the density, times both lengths of the cell */
@@ -55,7 +54,7 @@ double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])
     : support;
 }
 
-/* Returns the integral of w(|x|) w(|y|) w(|z|) along a line of sight. */
+/* Returns the integral of a tensor kernel along the line of sight through (x, y) of the image. */
 static double mcor_integrate_tensor(const mcor_column_job* job, double x, double y)
 {
   double from[3], kinks[MCOR_KINKS], sum = 0;
@@ -112,8 +111,8 @@ static double mcor_density_at(const mcor_column_job* job, double x, double y)
       t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
-/* Integrates w(sqrt(r^2 + z^2)) over z > 0. Pieces of the integral grow with z, and end where w
- * changes to another polynomial. */
+/* Writes to job->profile the integrals of w(sqrt(r^2 + z^2)) over z > 0. Pieces of an integral grow
+ * with z. No piece extends beyond a place where w changes to another polynomial. */
 static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_column_job* job = data;

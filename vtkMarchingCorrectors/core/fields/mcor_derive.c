@@ -79,9 +79,9 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     {
       m[k / 3][k % 3] = mcor_get_real(context, run->moment, 9 * i + k);
     }
-    if (context->space.axes == 2) /* the third axis is empty: this m[2][2] keeps the
-                                   * condition of the other two */
+    if (context->space.axes == 2)
     {
+      /* The third axis is empty. This entry hardly changes the condition of the other two axes. */
       m[2][2] =
         sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));
     }
@@ -174,7 +174,7 @@ static mcor_status mcor_derive_all(mcor_derive_run* run)
   for (int i = 0; i < attributes->varying_count; ++i)
   {
     mcor_component* c = &attributes->varying[i];
-    /* One bit is for the sign, one for differences. */
+    /* Two bits stay free: one for the sign, one for the difference of two values. */
     c->scale = ldexp(c->scale, fix == sizeof(int32_t) ? 29 : 61);
     MCOR_TRY(mcor_sort_values(context, run->input, &run->input->attributes[c->attribute],
       c->component, c->shift, c->scale, true, &run->arrays, i));
@@ -332,7 +332,7 @@ static void mcor_decompose_slice(void* data, int slice, int64_t first, int64_t l
       s[a][b] = 0.5 * (j[a][b] + j[b][a]);
       jj += j[a][b] * j[b][a];
     }
-    /* The inner loop is one of its own, as 27 rounds are not unrolled and take thrice as long. */
+    /* A single loop of 27 rounds takes thrice as long, because compilers do not unroll it. */
     for (int k = 0; k < 9; ++k)
     {
       const int a = k / 3, b = k % 3;

@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Fluxes through sections: integrals of the Shepard means of velocity and density, over the area
- * where the weight sum is at least the level. Each piece of a section is integrated in two ways. A
- * piece in fluid: by two quadrature rules, from the same samples. A piece that the level crosses:
- * once cut along one straight line, once divided into parts that are cut in this way. If the two
+ * where the weight sum is at least the level. Each piece of a section is integrated in two ways. In
+ * fluid, two quadrature rules use the same samples. A piece that the level crosses is once cut
+ * along one straight line, and once divided into parts that are each cut in this way. If the two
  * results differ, the piece is halved. */
 
 #include "mcor_flux.h"
@@ -16,23 +16,22 @@
 
 /* Longest side of a cell, in smallest scaled smoothing lengths. */
 #define MCOR_FLUX_CELL 0.75
-/* Most cells near particles, of all sections together; most cells of a piece along a side, so that
- * doubles can tell the corners of cells apart. */
+/* MCOR_FLUX_MOST: the most cells near particles, in all sections together. MCOR_FLUX_MOST_ALONG:
+ * the most cells along a side of a piece; doubles can then tell the corners of cells apart. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 1e15
-/* A piece's accuracy is relative to its greatest speed and density. Each counts as at least this
- * share of the greatest value of all particles, because this value decides how means are
- * rounded. */
+/* A piece's accuracy is relative to its greatest speed and density. Each of the two counts as at
+ * least this share of the greatest among all particles, which decides how means are rounded. */
 #define MCOR_FLUX_FLOOR 0.0625
-/* A sum may become this many times area times the greatest speed and density. Weights below 0, as
- * M'4 has, make sums a little larger than that product. */
+/* Sums have room for this many times area times greatest speed times greatest density. M'4, which
+ * has weights below 0, makes sums a little larger than this product. */
 #define MCOR_FLUX_ROOM 8
 /* Greatest difference between the two results of a piece, relative to its area times the scale in
- * mcor_settle_piece. A piece that is small beside the section may differ by more (MCOR_FLUX_SMALL),
- * because errors of many pieces cancel. */
+ * mcor_settle_piece. In a piece that is small beside the section (MCOR_FLUX_SMALL), the difference
+ * may be greater, because errors of many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
-/* The most halvings of a cell, and of a piece that the level may cross between its samples. */
+/* The most halvings of a cell; the most if it is unclear whether the level crosses the piece. */
 #define MCOR_FLUX_DEPTH 24
 #define MCOR_FLUX_UNCLEAR_DEPTH 12
 /* The second derivative of a weight is about 4 / h^2. So the weight between two samples may differ
@@ -72,9 +71,9 @@ void mcor_measure_piece(const mcor_flux_job* job, mcor_flux_piece* piece)
   }
 }
 
-/* Appends the halves of a piece. If halving makes the longest side no shorter, appends nothing, and
- * *is_halved becomes false: far from the origin, doubles may not tell the middle of a side from its
- * ends. */
+/* Appends the halves of a piece to job->parts. If halving hardly shortens the longest side, appends
+ * nothing, and *is_halved becomes false: far from the origin, doubles may not tell the middle of a
+ * side from its ends. */
 static mcor_status mcor_halve_piece(
   mcor_flux_job* job, const mcor_flux_piece* piece, bool* is_halved)
 {
@@ -172,14 +171,14 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
   return mcor_sample_level(&job->base, job->weight, samples);
 }
 
-/* Adds the integrals over the part of a triangle or line that is in fluid. Its corners are samples
- * of a piece; between them, weights and values are linear. Returns whether the level cuts the
- * triangle or line. */
+/* Adds the integrals over the part of a triangle or line that is in fluid. corner: the samples of a
+ * piece that are the corners. Between the corners, weights and values count as linear. Returns
+ * whether the level cuts the triangle or line. */
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
 {
-  /* Index: one bit per corner that is in fluid. Entry: the corner that is alone on its side of the
-   * level. */
+  /* Index: bit c tells that corner c is in fluid. Entry: the corner that is alone on its side of
+   * the level; 0 if none is. */
   static const int lone_corner[8] = { 0, 0, 1, 2, 2, 1, 0, 0 };
   const int corners = job->form->corners;
   const double level = job->base.level;
@@ -190,7 +189,7 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
   }
   const int lone = corners == 3 ? lone_corner[inside] : 0, from = corner[lone];
   const bool is_cut = inside != 0 && inside != (1 << corners) - 1;
-  /* Means over the triangle or line, and over the tip that the level cuts off. */
+  /* Means over the triangle or line, and over the tip at corner `from` that the level cuts off. */
   double tip[MCOR_FLUX_SUMS], mean[MCOR_FLUX_SUMS], share = is_cut ? 1 : 0;
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
@@ -216,7 +215,7 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
 }
 
 /* Integrates a piece in two ways: adds the simpler result to sum[0], the better one to sum[1].
- * weight, value: at the piece's samples. Returns whether the level cuts the piece. */
+ * weight, value: at the piece's samples. Returns whether the level separates the corners. */
 static bool mcor_integrate_piece(const mcor_flux_job* job, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[2][MCOR_FLUX_SUMS])
 {

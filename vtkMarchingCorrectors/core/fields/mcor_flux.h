@@ -57,17 +57,14 @@ typedef struct mcor_flux_job
   bool has_density;
   double smoothing_length; /* the smallest scaled smoothing length */
   double speed_floor, density_floor;
-  mcor_flux_section* found;          /* [section_count] */
-  MCOR_LIST(mcor_flux_piece) pieces; /* the pieces of all sections */
-  bool is_counting;                  /* the first pass, which only counts cells */
-  /* In this pass: index of the next one of `pieces`; halves of earlier pieces, which are treated
-   * first; how many cells there were so far. */
-  int64_t next;
-  MCOR_LIST(mcor_flux_piece) parts;
-  double cells;
-  mcor_flux_piece* batch; /* pieces under way */
-  /* Samples of the pieces in `batch`. */
-  double *weight, *velocity, *density;
+  mcor_flux_section* found;            /* [section_count] */
+  MCOR_LIST(mcor_flux_piece) pieces;   /* the pieces of all sections */
+  bool is_counting;                    /* the first pass, which only counts cells */
+  int64_t next;                        /* index of the next one of `pieces` in this pass */
+  MCOR_LIST(mcor_flux_piece) parts;    /* halves of earlier pieces, which are treated first */
+  double cells;                        /* how many cells this pass has found so far */
+  mcor_flux_piece* batch;              /* pieces under way */
+  double *weight, *velocity, *density; /* samples of the pieces in `batch` */
 } mcor_flux_job;
 
 /* mcor_flux_section.c. Checks a section and appends its pieces. */

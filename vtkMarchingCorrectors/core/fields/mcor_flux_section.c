@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sections as triangles or, in two dimensions, as lines. */
+/* Turns sections into triangles or, in two dimensions, into lines. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
@@ -49,7 +49,7 @@ mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number)
   return mcor_label_of(job->sections[number].name, number);
 }
 
-/* Appends a triangle given in the caller's coordinates. normal: has length 1. */
+/* Appends a triangle or, if y = z, a line, in the caller's coordinates. normal: has length 1. */
 static mcor_status mcor_add_triangle(mcor_flux_job* job, int64_t number, const double x[3],
   const double y[3], const double z[3], const double normal[3])
 {
@@ -64,7 +64,7 @@ static mcor_status mcor_add_triangle(mcor_flux_job* job, int64_t number, const d
   }
   for (int c = 0, axis = 0; axis < 3; ++axis)
   {
-    /* A velocity of two components has none along the constant axis. */
+    /* A velocity of two components lacks the component across the plane. */
     if (job->velocity_components == 3 || axis != job->across)
     {
       piece.normal[c++] = normal[axis];
@@ -122,8 +122,8 @@ static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const 
   return mcor_leaves_plane(job, number);
 }
 
-/* Finds the edges that begin at a triangle's first corner, and its unit normal times `sign`.
- * Returns false if the triangle has no normal. */
+/* Finds the edges that begin at a triangle's first corner, and the triangle's unit normal times
+ * `sign`. Returns false if the triangle has no area. */
 static bool mcor_find_edges(const double x[9], double sign, double edges[2][3], double normal[3])
 {
   mcor_subtract(x + 3, x, edges[0]);
@@ -178,8 +178,8 @@ static mcor_status mcor_add_disc(
     cosine = MCOR_DISC_COSINE * last - MCOR_DISC_SINE * sine;
     sine = MCOR_DISC_SINE * last + MCOR_DISC_COSINE * sine;
   }
-  /* The largest triangles come first: two that form a square, then one on each side of the
-   * square. */
+  /* The largest triangles come first: two that form a square, then one on each side of the square,
+   * and so on. */
   for (int step = MCOR_DISC_CORNERS / 4; step > 0; step /= 2)
   {
     for (int i = 0; i < MCOR_DISC_CORNERS; i += 2 * step)

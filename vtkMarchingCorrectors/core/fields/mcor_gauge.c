@@ -4,11 +4,11 @@
 /* Gauges: where lines cross the free surface. All lines go through each step together, so the device
  * has many points at a time.
  *
- * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel, so
- * it is almost a parabola over that distance. If the middle one of three samples is an extremum,
- * the parabola through them goes beyond it by at most an eighth of the samples' differences. To be
- * safe, four times as much is assumed: if this may reach the level, this part of the line is
- * sampled more finely.
+ * Samples are a quarter of a smoothing length apart. Over this distance, the weight sum is almost a
+ * parabola. If the middle one of three samples is an extremum, the parabola through the samples
+ * goes beyond the middle one by at most an eighth of the greater difference between the samples. To
+ * be safe, half of this difference is assumed: if the weight sum may so reach the level, this part
+ * of the line is sampled more finely.
  *
  * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
  * these samples, and the crossings between each sample and the next. The rank has the particles
@@ -28,12 +28,12 @@
 #define MCOR_GAUGE_MARGIN 2.5
 #define MCOR_GAUGE_STEP 0.25 /* in smallest scaled smoothing lengths */
 #define MCOR_GAUGE_LEAST_STEPS 4
-/* Most samples of one line; most steps, so that doubles can tell places on the line apart. */
+/* The most samples of a line; the most steps, so that doubles can tell places on a line apart. */
 #define MCOR_GAUGE_MOST (1 << 26)
 #define MCOR_GAUGE_MOST_STEPS 4e15
 #define MCOR_GAUGE_FINER 16   /* sections of a part with an extremum */
 #define MCOR_GAUGE_SECTIONS 8 /* sections of a part with a crossing */
-/* Rounds, after which an extremum is known to 1e-7 of a smoothing length, a crossing to 1e-8. */
+/* After these rounds, an extremum is known to 1e-7 of a smoothing length, a crossing to 1e-8. */
 #define MCOR_GAUGE_EXTREMUM_ROUNDS 7
 #define MCOR_GAUGE_SOLVE_ROUNDS 8
 #define MCOR_GAUGE_NEAR 0.5
@@ -60,8 +60,8 @@ typedef struct mcor_gauge_row
   const double* weight; /* [count] */
 } mcor_gauge_row;
 
-/* A place on a line. In job->records, a place is where the line crosses the level or, below 0, one
- * of these two facts. */
+/* A place on a line. In job->records, a place is where the line crosses the level; a negative place
+ * tells one of these two facts. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
 typedef struct mcor_gauge_place
@@ -84,10 +84,9 @@ typedef struct mcor_gauge_job
   mcor_gauge_places records;
   mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
   mcor_gauge_parts suspects; /* parts with an extremum that may be beyond the level */
-  /* Work space: parts that are divided; where the field is evaluated; the weight sums there. */
-  mcor_gauge_parts divided;
-  mcor_gauge_places inner;
-  double* weights;
+  mcor_gauge_parts divided;  /* parts that are being divided */
+  mcor_gauge_places inner;   /* where the field is evaluated */
+  double* weights;           /* [inner.count] the weight sums at these places */
 } mcor_gauge_job;
 
 const char* mcor_gauge_state_name(mcor_gauge_state state)
@@ -138,7 +137,7 @@ static mcor_status mcor_take_line(mcor_gauge_job* job, int64_t number)
   return MCOR_OK;
 }
 
-/* Appends the samples of a line where particles may reach it. The lattice must be known. */
+/* Appends a row with the samples of a line that particles may reach. The lattice must be known. */
 static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 {
   mcor_context* context = job->base.context;
@@ -156,7 +155,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     {
       continue; /* along a period, particles may be anywhere */
     }
-    /* A line across the axis divides by 0, so it is in reach as a whole, or not at all. */
+    /* If `way` is 0, the quotients are infinite: the whole line is in reach, or no part of it. */
     clip[0] = fmax(clip[0], fmin(low / way, high / way));
     clip[1] = fmin(clip[1], fmax(low / way, high / way));
   }
@@ -255,8 +254,8 @@ static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
   return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
 }
 
-/* Appends the parts of a row with a crossing to job->changed. If suspects is not NULL, appends to
- * it the parts with an extremum that may be beyond the level. */
+/* Appends to job->changed the parts of a row in which the line crosses the level. If suspects is
+ * not NULL, appends to it the parts with an extremum that may be beyond the level. */
 static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects)
 {
@@ -379,7 +378,7 @@ static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64
 /* ---- readings ---- */
 
 /* Makes the reading of a line from its crossings, and turns the crossings from places into
- * lengths. */
+ * distances from the line's beginning. full: the line ends in fluid. */
 static void mcor_read_line(
   const mcor_gauge_line* line, bool full, mcor_gauge_reading* r, double* crossings)
 {

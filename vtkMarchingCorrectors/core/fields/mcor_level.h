@@ -3,8 +3,8 @@
 #ifndef mcor_level_h
 #define mcor_level_h
 
-/* Functions for gauges and fluxes. Both find from weight sums at points where fluid is: there is
- * fluid where the weight sum is at least a level. */
+/* Functions for gauges and fluxes. There is fluid where the weight sum is at least a level, so both
+ * find from weight sums at points where fluid is. */
 
 #include "mcor_probe.h"
 
@@ -39,8 +39,8 @@ mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
  * ranges `around`. */
 mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, double margin, mcor_status (*work)(mcor_level_job*));
-/* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid, lowered
- * near solids so that they fall below the level where the fluid ends at them. */
+/* Evaluates the run's first `count` points. weight: takes the weight sums of the fluid. Near solids
+ * the sums are lowered, so that they are below the level where the fluid ends at the solids. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count);
 /* Whether a point is in a cell that this call owns. Without a box, the call owns all points. */
 bool mcor_owns_point(const mcor_level_job* job, const double point[3]);

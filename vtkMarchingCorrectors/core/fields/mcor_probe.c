@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The probe: Shepard means or sums of particle arrays, and their gradients, at points of the
- * caller's choice. On the device an array is A' = (A - A0) s, with A0 in the middle of its
- * range: single precision then keeps the digits of an array with a large offset. */
+ * caller's choice. On the device an array is A' = (A - A0) s: A0 is the middle of the range of A,
+ * and s is a power of 2. So single precision keeps the digits of an array with a large offset. */
 
 #include "mcor_probe.h"
 #include "mcor_box.h"
@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points on the device at a time. Points near each other are evaluated together; a smaller batch of
- * unordered points would have fewer of them. */
+/* Points on the device at a time. Points near each other are evaluated together; in a smaller batch
+ * of unordered points, fewer points would be near each other. */
 #define MCOR_PROBE_BATCH (1 << 18)
 
 /* Where the fluid's weight is not above this, a mean has no correct digits, and the point is not
@@ -33,8 +33,8 @@ bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
   return context->box.of_points = true;
 }
 
-/* Reads positions of points [first, first + count) of the batch, from the lattice's origin. The
- * unit is an edge of the lattice. */
+/* Reads positions of points [first, first + count) of the batch, relative to the lattice's origin
+ * and in edges of the lattice's cells. */
 static void mcor_read_points(
   const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
 {
@@ -49,14 +49,14 @@ static void mcor_read_points(
       at[a][i] = at[a][i] / lattice->edge[a] - origin;
     }
     /* The gradient of MCOR_QUADRATIC is 0 exactly at a particle, but not nearby. So points are
-     * rounded as particles are: a point at a particle stays at it. */
+     * rounded as particles are: a point at a particle stays exactly at the particle. */
     for (int i = 0; i < count && run->context->run.options->sph_kernel == MCOR_QUADRATIC; ++i)
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
-    /* Points on both sides of the period lie in the period. Along a period, points are rounded,
-     * too, so that points a period apart get the same position. If a point is on a side that is not
-     * in the box, it moves to the other side of the period. */
+    /* Points at either end of a period count as within it. Along a period, points are rounded, too,
+     * so that points a period apart get the same position. If a point is at an end that is not in
+     * the box, it moves to the other end. */
     const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
     for (int i = 0; i < count && period > 0; ++i)
     {
@@ -282,8 +282,8 @@ static bool mcor_has_attributes(const mcor_context* context, const mcor_input* i
   return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;
 }
 
-/* Evaluates all arrays at all points: one group of arrays after the other, for one batch of points
- * after the other. */
+/* Evaluates all arrays at all points: for one group of arrays after the other, goes through all
+ * batches of points. */
 static mcor_status mcor_probe_all(mcor_probe_run* run)
 {
   mcor_context* context = run->context;
@@ -332,8 +332,8 @@ void mcor_free_arrays(double** arrays, int count)
   free(arrays);
 }
 
-/* Lists the components of the attributes, and allocates the results. Points that no particle
- * reaches keep the zeros. */
+/* Lists the components of the attributes, and allocates the results as zeros. At points that no
+ * particle reaches, the zeros stay. */
 static mcor_status mcor_make_samples(
   mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
 {
@@ -394,7 +394,7 @@ static mcor_status mcor_run_probe(
   run.points = &points;
   if (!mcor_bound_by_box(context, options))
   {
-    /* Lets the call use only particles near the caller's finite points. */
+    /* Only particles near the points are used, unless later calls may reuse the search grid. */
     for (int a = 0; a < 3; ++a)
     {
       const mcor_findings found =
@@ -432,8 +432,8 @@ static mcor_status mcor_run_probe(
 }
 
 /* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the free
- * surface, without solids. Only if volumes are computed, and the caller's field is not the weight
- * sum, are solids used, because they count in computed volumes. Returns whether solids are used. */
+ * surface. It uses solids only if volumes are computed, in which solids count, and the caller's
+ * field is not the weight sum. Returns whether solids are used. */
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
 {
   const bool uses_solids =

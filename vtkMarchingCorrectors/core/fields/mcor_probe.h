@@ -47,9 +47,9 @@ void mcor_free_arrays(double** arrays, int count);
 /* Ends a call that makes no surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 
-/* mcor_widen.c. Makes *volume, [count], unit L^3: the computed volumes, which are found from the
- * search grid's weights. Particles that are not on the device or not in the box get 1. The caller
- * frees *volume, even after a failure. */
+/* mcor_widen.c. Makes *volume, [count], unit L^3, in a plane L^2: the computed volumes, which are
+ * found from the search grid's weights. Particles that are not on the device or not in the box get
+ * 1. The caller frees *volume, even after a failure. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double** volume);
 
 #endif

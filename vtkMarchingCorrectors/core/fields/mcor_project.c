@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Column integrals of the SPH sum, averaged over the pixels of an image: the image's content,
- * and the call. */
+/* Column integrals of the SPH sum, averaged over the pixels of an image: the image's axes and
+ * sides, and the call. */
 
 #include "mcor_project.h"
 #include "mcor_plane.h"
@@ -13,10 +13,8 @@
 
 #define MCOR_MOST_PIXELS 32768 /* along the longer side */
 #define MCOR_MOST_PERIODS 2    /* longest support, in periods; more would need too many images */
-#define MCOR_MOST_IMAGES 16    /* the most images of a period in a box, along an axis */
-#define MCOR_MOST_LENGTHS                                                                          \
-  1e6 /* the longest side of an image without a box, in the largest
-                                * smoothing length */
+#define MCOR_MOST_IMAGES 16    /* longest side of a box, in periods */
+#define MCOR_MOST_LENGTHS 1e6  /* longest side of an image without a box, in largest scaled h */
 
 /* ---- the image ---- */
 
@@ -76,7 +74,7 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
 }
 
 /* Finds six ranges that particles reach: along both axes of the image, along the line of sight
- * (only the particles' positions), and along x, y, z. The seventh range is that of scaled h. */
+ * (only the particles' positions), and along x, y, z. The seventh range is of h times h_scale. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -213,7 +211,7 @@ static mcor_status mcor_run_project(
       !mcor_is_given(&input->density),
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_COLUMN_DENSITY));
   /* Makes the search grid if it is needed: for volumes that are computed, or an estimated smoothing
-   * length. If not, data kept from earlier calls may belong to other particles. */
+   * length. If not, forgets data of other particles that earlier calls kept. */
   const bool computes = mcor_needs_density(input) && !job->places_only &&
     (!mcor_projects_density(input) || !mcor_is_given(&input->mass) || job->channels == 2);
   bool is_empty = true;

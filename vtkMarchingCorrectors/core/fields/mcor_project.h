@@ -40,16 +40,17 @@ double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 /* Returns the table's cell, and the weights, for a rectangle's side at `at` (in h) along x (axis 0)
  * or y (axis 1). */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
-/* Writes to `sums` E at the corners where `count` sides along x meet one side along y. */
+/* Writes E at `count` corners to `sums`: where each of `sides` along x meets `side` along y. */
 void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, int count,
   const mcor_column_side* side, double* sums);
 
 /* ---- The image ---- */
 
-/* A particle, or a periodic image of it, in the pixels of the call. */
+/* A particle, or a periodic image of it, in pixels. V: its volume; A: the scalar or the density; B:
+ * the weight of a mean. */
 typedef struct mcor_splat
 {
-  double at[2];          /* from the corner, in pixels */
+  double at[2];          /* position from the image's lower corner, in pixels */
   double pixel[2];       /* side of a pixel, in h */
   double amount[2];      /* V A; or, for a mean, V B A and V B; each divided by a pixel's area */
   int first[2], last[2]; /* first and last pixel that the particle reaches */
@@ -70,8 +71,8 @@ typedef struct mcor_project_job
   double h_scale;
   mcor_column column;
   int channels; /* 2 for a mean, else 1 */
-  /* [channel][coarse, fine]: 3/2 of a power of 2. Adding a unit to a number and subtracting it
-   * again rounds the number: first to the coarse unit, then the rest to the fine unit. */
+  /* [channel][coarse, fine]: 3/2 of a power of 2. Adding such a unit to a number and subtracting it
+   * again rounds the number to the unit's last digit. Then the rest is rounded by the fine unit. */
   double unit[2][2];
   double* sums;           /* [channels][2][pixels]: of the rounded numbers; of the rounded rests */
   int64_t first;          /* first of the particles of this step */

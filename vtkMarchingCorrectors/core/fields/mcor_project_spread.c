@@ -21,8 +21,8 @@
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
 /* Reads mcor_splat.amount of particles, not yet divided by an area: V A or, for a mean, V B A and V
- * B. If the image shows the density and masses are given, V A is the mass. If the weight B is the
- * array of masses, V B is the mass. */
+ * B. If the image shows the density, and masses are given, V A is the mass. If the array of the
+ * weight B is the array of masses, V B is the mass. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {
@@ -110,9 +110,9 @@ static bool mcor_make_splat(
 
 /* ---- spreading ---- */
 
-/* Adds a particle to a row of pixels. A pixel's share is at least `lowest`. below, above: the
- * kernel's integral E (mcor_project.h) at the lower and the upper corners of the row's pixels. Each
- * number is split: its rounded part is added to coarse, and the rest, rounded too, to fine. */
+/* Adds a particle to a row of pixels. A pixel's share below `lowest` counts as `lowest`. below,
+ * above: the kernel's integral E (mcor_project.h) at the lower and the upper corners of the row's
+ * pixels. Each number's rounded part is added to coarse, and the rounded rest to fine. */
 static void mcor_add_pixels(int count, double amount, double lowest, const double* restrict below,
   const double* restrict above, const double unit[2], double* restrict coarse,
   double* restrict fine)
@@ -173,8 +173,8 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
 
 /* ---- the passes ---- */
 
-/* Spreads the periodic images of particles over the picture. The first pass only counts the
- * periodic images, and finds the most that one of them adds to a pixel. */
+/* Spreads particles, with their periodic images, over the image. The first pass only counts them,
+ * and finds the most that one of them adds to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -226,7 +226,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
           }
         }
       }
-      /* A pixel's share of a kernel may exceed 1, because M'4 is partly negative, but not 2. */
+      /* A pixel's share of M'4, which is partly negative, may exceed 1, but not 2. */
       const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
       for (int c = 0; c < job->channels && found.sums[0] > before; ++c)
       {

@@ -20,8 +20,8 @@
  *   the factor = max(1, min(f, mean)); where f = 1 and sided > 0:
  *           1 + 4 sided (1 - sided) (max(1, mean) - 1)
  *
- * iso: the iso value of the free surface, the greatest of several; 0.5 for scalars. In the plane,
- * the limits of N are multiplied by 0.31. */
+ * widest: options.widen. iso: the iso value of the free surface, the greatest of several; 0.5 for
+ * scalars. In the plane, the limits of N are multiplied by 0.31. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"
@@ -36,8 +36,8 @@
 #define MCOR_WIDEN_MARGIN 0.1
 
 /* Numbers of neighbours, weighted by nearness. With fewer than the first number, a particle's
- * length is not widened; from the second number on, it is fully widened. In a thread of particles
- * each has 2 neighbours, in a sheet 6; in two dimensions, in a line 2. */
+ * length is not widened; from the second number on, it is fully widened. A particle in a thread has
+ * about 2 neighbours, in a sheet about 6; in two dimensions, in a line, about 2. */
 #define MCOR_CROWD_FROM 2.2
 #define MCOR_CROWD_TO 4.5
 #define MCOR_CROWD_IN_PLANE 0.31 /* in the plane both numbers are multiplied by this */
@@ -254,11 +254,11 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   widening->count = input->count;
   widening->factor = mcor_make_ones(input->count);
   widening->outside = calloc((size_t)(input->count > 0 ? input->count : 0) + 1, 1);
-  /* Nobody reads the 1 of a particle that is not on the device. */
+  /* Particles that are not on the device keep the 1, which nobody reads. */
   widening->volume = mcor_needs_density(input) ? mcor_make_ones(input->count) : NULL;
   mcor_status status = mcor_allocated(context,
     widening->factor && widening->outside && (widening->volume || !mcor_needs_density(input)));
-  /* Factors depend on these particles and options alone. */
+  /* Leaves out what the factors do not depend on. */
   mcor_input particles = *input;
   mcor_options own = *options;
   particles.widening = (mcor_array){ 0 };

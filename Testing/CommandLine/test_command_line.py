@@ -103,7 +103,7 @@ class Usage(CommandLineTest):
         self.assertRegex(self.run_good("--list-devices").stdout, r"^0: built in: this CPU")
 
     def test_values_of_the_wrong_form(self):
-        """A number or a word that an option cannot take is refused by a sentence that names the option."""
+        """A number or a word that an option cannot take is refused with an error that names the option."""
         text = self.run_good("--help", "all", env={**os.environ, "COLUMNS": "300"}).stdout
         tried = 0
         for option, form in re.findall(r"(?m)^  (--[\w-]+) (\S+) ", text):

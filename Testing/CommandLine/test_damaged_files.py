@@ -138,7 +138,7 @@ class DamagedFiles(CommandLineTest):
         self.extract_good("--free-surface", env=environment)  # A run on the built-in device loads no driver.
 
     def test_damaged_kernels(self):
-        """Files in PoCL's cache are cut off, emptied or overwritten. The run fails, and its last sentence names the folder or POCL_CACHE_DIR."""
+        """Files in PoCL's cache are cut off, emptied or overwritten. The run fails, and its last message names the folder or POCL_CACHE_DIR."""
         whole, kept = self.directory / "whole", self.directory / "kept"
         whole.mkdir()
         if self.extract("--free-surface", "--device", "pocl", env={**os.environ, "POCL_CACHE_DIR": str(whole)}).returncode:

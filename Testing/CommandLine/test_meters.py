@@ -48,7 +48,7 @@ class Meter(CommandLineTest):
 
     def test_times(self):
         """A file's time is used, also if there is only one file. Several files without times are dt apart if all store the same dt, else 1
-        apart; a warning says so."""
+        apart; a warning names these times or dt."""
         for step in range(3):
             for name in ("step", "timed"):
                 files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))

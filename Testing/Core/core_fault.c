@@ -36,7 +36,7 @@ static int fails(const char* name, int kind)
 
 const cl_icd_dispatch* __real_mcor_driver(const void* object);
 
-/* The first parameter is an object of the driver. */
+/* Defines try_NAME, which fails or calls the driver's NAME. object: the parameter that tells the driver. */
 #define FAULT_CALL(name, object, parameters, arguments)                                            \
   static cl_int try_##name parameters                                                              \
   {                                                                                                \

@@ -216,7 +216,7 @@ def cells_of(surface, ids=None):
 
 
 def part_of(surface):
-    """Returns what rank 0 needs of a rank's surface."""
+    """Returns the names of the ids, the arrays, the numbers of the cells, and the cells of a rank's surface; None if it has no points."""
     if surface.GetNumberOfPoints() == 0:
         return None
     names = [data.GetGlobalIds() and data.GetGlobalIds().GetName() for data in (surface.GetPointData(), surface.GetCellData())]

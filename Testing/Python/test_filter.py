@@ -413,7 +413,7 @@ class TestTold(FilterTest):
             self.assertRegex(str(extract), words + "\n")
 
     def test_mode(self):
-        """If the user chooses nothing, the filter makes the free surface, but not for a gas that fills its bounds."""
+        """If the user chooses nothing, the filter makes the free surface, unless particles fill their bounds and are not known as a liquid."""
         x = lattice(20, 12, 8)
         there = x[(x[:, 2] < 0.4) | (x[:, 0] < 1)]  # a dam
         varying = 0.13 * (1 + 0.3 * numpy.sin(x[:, 0]))

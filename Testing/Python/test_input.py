@@ -212,8 +212,7 @@ class TestKinds(unittest.TestCase):
         return grid
 
     def test_particles_among_meshes(self):
-        """If there are vertices beside other cells, the vertices' points are the particles, also if some blocks have vertices and others
-        have other cells."""
+        """If there are vertices beside other cells, the vertices' points are the particles, even if only one of the blocks has vertices."""
         particles, mesh = cube(), self.make_mesh(None, "points")
         particles.GetPointData().RemoveArray("Volume")
         expected = run(sphere(particles))[0].GetNumberOfCells()

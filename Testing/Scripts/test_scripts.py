@@ -164,8 +164,8 @@ class Configuration(ScratchTest):
         self.check_stops(result, "cmocka (Debian: libcmocka-dev) was not found")
 
     def test_the_sdk_is_told_before_anything_is_installed(self):
-        """If neither SDK is installed, a user at a terminal is asked which one to install; without a terminal a
-        sentence is printed."""
+        """If neither SDK is installed, a user at a terminal is asked which one to install; without a terminal VTK
+        is taken, and a message names the option for ParaView."""
         def choose(stdin):
             return subprocess.run(["bash", "-c", ". .ci/packages.sh; mcor_is_installed() { false; }; mcor_choose_sdk ''"],
                                   cwd=SOURCE, text=True, check=True, stdin=stdin, stdout=subprocess.PIPE,

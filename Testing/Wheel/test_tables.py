@@ -589,8 +589,7 @@ class AsTheProgram(Case):
                 mc.free_surface(io.read(self.at(name)), smoothing_length=9.0)
 
     def test_no_circle(self):
-        """If the program cannot read a file, its sentence names the command that converts the file, and this command can read the whole
-        file."""
+        """If the program cannot read a file, its error names the command that converts the file, and this command can read the whole file."""
         random = np.random.default_rng(3)
         writers = {"a.npz": write_npz, "a.npy": lambda path, r: np.save(path, r.normal(size=(20, 3))),
                    "a.gro": lambda path, r: write_gro(path, r, 2), "a.data": write_data,

@@ -11,7 +11,7 @@
 typedef struct fill_report
 {
   double area,
-    /* area: of the triangles. enclosed: by the lines of the lowest iso value; 0 unless all are closed. */
+    /* area: all triangles'. enclosed: within lines of the lowest iso value; 0 unless all these are closed. */
     enclosed;
   double inverted; /* area of triangles that run round in the wrong direction */
   int64_t loose;   /* edges on the border that are not lines */

@@ -203,7 +203,7 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
 }
 
 // Chooses the active scalars among the particles' attributes that vary on the surface. If there are
-// several iso values, the array of iso values may be chosen, too. If there is one, the contoured
+// several iso values, the array of iso values may be chosen, too. With one iso value, the contoured
 // scalar is not chosen: it varies by rounding alone. For vectors, the magnitudes must vary.
 void vtkMarchingCorrectorsOutput::ChooseActive(vtkPolyData* output, const Merge& merge) const
 {

@@ -278,8 +278,8 @@ bool vtkSPHTemporalPair::Find(const std::string& role, const std::string& name, 
   return this->Error.empty();
 }
 
-// Warns if a velocity is not finite, or if the particles' motion along their mean velocities is less
-// than half, or more than twice, what the velocities say. The velocities are then not used.
+// Warns if a velocity is not finite, or if FewParticles or more have moved along their mean velocities
+// less than half, or more than twice, as far as the velocities say. Velocities are then not used.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

@@ -119,7 +119,7 @@ public:
 private:
   void Check(bool isGood, const std::string& why) const { RequireToRead(isGood, this->Name, why); }
 
-  /// Copies numbers, and reverses their bytes if the file has the other byte order.
+  /// Copies numbers, and reverses their bytes if the file's byte order is not this machine's.
   void Copy(View from, void* to, std::size_t count, std::size_t width) const
   {
     from.copy(static_cast<char*>(to), count * width);

@@ -36,7 +36,7 @@ typedef struct keep_cells
   unsigned char* bytes;
 } keep_cells;
 
-/* Adds a cell. The corner with the least bytes becomes the first; the cyclic order stays. */
+/* Adds a cell. The corner that memcmp() finds least becomes the first; the cyclic order stays. */
 static void add_cell(
   keep_cells* cells, const mcor_input* input, mcor_surface* s, const int32_t* points)
 {

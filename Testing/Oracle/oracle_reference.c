@@ -169,7 +169,7 @@ void oracle_create_reference(
     const double any = reference->particles.count > 0 ? reference->particles.scalar[0] : 0.0;
     reference->range = any != 0.0 ? fabs(any) : 1.0;
   }
-  /* In single precision rounding may change the side of a node whose value is this close to iso. */
+  /* Rounding may change the side of a node whose value is this close to iso, relative to the range. */
   const double relative = single ? 2e-6 : 1e-13;
   reference->limits = (oracle_limits){ .iso = options->iso_count > 0 ? options->iso_values[0] : 0.5,
     .node_threshold = options->node_threshold,

@@ -69,7 +69,7 @@ static void test_kernel_gradients(void)
   }
 }
 
-/* Compares with values that can be worked out by hand. */
+/* Compares the kernels with values that can be worked out by hand. */
 static void test_kernel_values(void)
 {
   const double pi = 3.14159265358979323846;

@@ -116,7 +116,7 @@ static void evaluate(const particles* p, const mcor_options* options, double iso
   }
 }
 
-/* Places sample s of a box: at its corners, on its edges and faces, and inside. */
+/* Writes where sample s of a box lies, in cubes: at a corner, on an edge or a face, or inside. */
 static void place_sample(const cl_int4* box, int s, uint64_t* seed, double at[3])
 {
   for (int a = 0; a < 3; ++a)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests attributes, nearest particles, and normals from triangles. The oracle checks gradients, and normals from them. */
+/* Tests attributes, nearest particles, and normals from triangles. The oracle checks normals from gradients. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"

@@ -28,7 +28,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-/** Data that outlive a run: the core's context, and the particles and the scalar that it keeps. */
+/** Data that outlive a run: the core's context, signatures of the data that it keeps, and data made from the input. */
 class vtkSPHAlgorithm::vtkInternals
 {
 public:
@@ -129,13 +129,13 @@ public:
   /** Returns true if `problem` is empty on all processes. Else reports the error and returns false. */
   virtual bool Agree(const std::string& problem);
 
-  /** Takes this process's particles. If they are null, a run of one process returns false. */
+  /** Takes this process's particles. Returns false if the run was cancelled; a run of one process also if they are null. */
   virtual bool Begin(vtkPointSet* particles);
   /** Returns the filter's description of the particles, completed as vtkSPHChoose() does. */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
-   * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if a setting
-   * has no effect. Warns if there is no fluid, and names the `consequence`, such as "no surface".
+   * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if there is
+   * no fluid, and names the `consequence`, such as "no surface"; else warns if a setting has no effect.
    * Returns false, after an error, if an array is not usable. Does nothing without particles.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);

@@ -71,8 +71,8 @@ def walls():
 
 
 def volumes():
-    """Prints by how many per cent the volume inside the free surface of sheets, threads and drops of few particles exceeds the
-    particles' own volume: with computed volumes, and with a given volume of 1 for each particle."""
+    """Prints how much larger, in %, the volume inside the free surface is than the particles' own volume: for sheets, threads and drops
+    of few particles, with computed volumes, and with a given volume of 1 for each particle."""
     ball = lattice((-4, 4), (-4, 4), (-4, 4))
     bodies = {"one layer": (lattice((0, 12), (0, 12), (0, 1)), (12, 12, 0)),
               "two layers": (lattice((0, 12), (0, 12), (0, 2)), (12, 12, 0)),

@@ -266,7 +266,7 @@ def project(benchmark):
     """Compares column densities of Evrard's sphere (density 1 / r, h of 1.2 spacings, in a box with edges of 2.6)
     by project() of Python and by sarracen's code for the processor. sarracen's exact mode gives means over pixels, as project() does;
     otherwise sarracen evaluates kernels at the centres of pixels, or of 4 x 4 finer pixels, which are averaged. An error is the
-    largest difference from project(), over the greatest value; the exact mode's error tells how closely both programs agree.
+    largest difference from project(), divided by project()'s greatest value; the exact mode's error tells how closely both programs agree.
     Seconds are by the clock and of processors."""
     import marchingcorrectors
     from sarracen.interpolate.cpu_backend import CPUBackend

@@ -98,7 +98,7 @@ def times(benchmark):
 def smooth(benchmark):
     """Measures, for each surface: the tilt of its triangles against the true surface (root of the mean square, degrees), how many
     of the crown's lone drops it has, the number of triangles, the share of triangles with an angle below 20 degrees, and the enclosed
-    volume over the particles' own. With given particles, measures only processor seconds of whole runs, see times()."""
+    volume divided by the particles' own. With given particles, measures only processor seconds of whole runs, see times()."""
     if benchmark.files:
         return times(benchmark)
     random, path = np.random.default_rng(benchmark.arguments.seed), benchmark.folder / "scene.vtp"

@@ -26,8 +26,8 @@
  *     particles, and makes all lines.
  * 10. No rank returns while another rank waits for it: all ranks first agree on any problem.
  *
- * All functions except the getters are collective: all ranks call them in the same order. Built
- * where VTK has MPI and DIY, whose serialization turns values into bytes (diy::Serialization).
+ * All functions except the getters are collective: all ranks call them in the same order. The
+ * module needs a VTK with MPI and DIY; DIY turns values into bytes (diy::Serialization).
  */
 #ifndef vtkSPHRanks_h
 #define vtkSPHRanks_h

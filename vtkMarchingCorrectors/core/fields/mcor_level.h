@@ -3,8 +3,8 @@
 #ifndef mcor_level_h
 #define mcor_level_h
 
-/* Functions for gauges and fluxes. There is fluid where the weight sum is at least a level, so both
- * find from weight sums at points where fluid is. */
+/* Functions for gauges and fluxes, which find the fluid from weight sums at points: there is fluid
+ * where the weight sum is at least a level. */
 
 #include "mcor_probe.h"
 
@@ -15,7 +15,7 @@ typedef struct mcor_level_job
 {
   mcor_context* context;
   double level;
-  mcor_findings around; /* ranges along x, y, z that hold all that is measured */
+  mcor_findings around; /* ranges along x, y, z that hold all gauges or sections */
   bool has_box;
   double box[6];       /* the box that this call owns, in the call's coordinates */
   double owned[3][2];  /* the box's cells along x, y, z */

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Column integrals of the SPH sum, averaged over the pixels of an image: the image's axes and
- * sides, and the call. */
+/* Projections: column integrals of the SPH sum, averaged over the pixels of an image. This file
+ * sets the image's axes and sides, and makes the call. */
 
 #include "mcor_project.h"
 #include "mcor_plane.h"

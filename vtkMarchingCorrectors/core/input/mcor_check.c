@@ -17,7 +17,7 @@ mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, doub
     isnan(from) || isnan(to) ? "both must be numbers" : "the first must be lower than the second");
 }
 
-/* Refuses values that no measurement yields. Without particles, ranges are empty. */
+/* Refuses globals with values that no measurement yields. Ranges are empty without fluid. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
   const mcor_measure* m = &g->measured;
@@ -108,7 +108,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
       MCOR_SAY(ISO_OF_FREE_SURFACE), options->iso_values[i]);
   }
-  /* Pair seeds may miss cells that a cap needs; with a box, the pairs may lie outside of it. */
+  /* Seeds at pairs of particles may miss cells that a cap needs; pairs may lie outside of a box. */
   const char* other = options->capping ? "{capping}"
     : mcor_has_box(options)            ? "{box}"
     : options->ranks                   ? "Several processes"
@@ -150,7 +150,8 @@ static mcor_status mcor_check_form(
   return MCOR_OK;
 }
 
-/* Checks an array's form, and that each element in use is finite, and above 0 where it must be. */
+/* Checks an array's form, and that the values of all particles except skipped ones are finite and,
+ * if `positive`, above 0. */
 static mcor_status mcor_check_array(mcor_context* context, const mcor_input* input,
   const mcor_array* array, mcor_skip skip, const char* role, int components, bool positive)
 {
@@ -191,7 +192,7 @@ mcor_status mcor_check_scalar_form(mcor_context* context, const mcor_input* inpu
                                 : MCOR_OK;
 }
 
-/* Checks the arrays that particles have whatever the field is. */
+/* Checks the arrays of particles that do not depend on the field. */
 static mcor_status mcor_check_particles(mcor_context* context, const mcor_input* input)
 {
   const mcor_skip skip = context->run.uses_solids ? MCOR_SKIP_ABSENT : MCOR_SKIP_SOLIDS;

@@ -39,13 +39,12 @@ typedef struct mcor_far_job
   const mcor_context* context;
   const mcor_input* input;
   mcor_far* far;
-  bool open[3];        /* axes without a period */
-  double reach, slack; /* per smoothing length: the support radius, and how much farther away a
-                        * particle is still needed */
-  double margin;       /* the margin for mcor_reach_around */
-  double radius;       /* all particles within this distance of the region stay */
-  mcor_findings slices[MCOR_SLICES], all; /* all: the sum over slices and ranks; only `first` is of
-                                           * this rank. */
+  bool open[3]; /* axes without a period */
+  /* Per smoothing length: the support radius; how much farther away a particle is still needed. */
+  double reach, slack;
+  double margin; /* the margin for mcor_reach_around */
+  double radius; /* all particles within this distance of the region stay */
+  mcor_findings slices[MCOR_SLICES], all; /* all: of all ranks, but `first` is of this rank */
 } mcor_far_job;
 
 static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
@@ -94,7 +93,7 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_findings(context, &job->all);
 }
 
-/* Marks as absent all particles that do not reach the box or the points, but keeps those near
+/* Marks as absent all particles that do not reach the box or the points, except particles near
  * enough to be needed for volumes, pairs and nearest particles. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
@@ -121,8 +120,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 }
 
 /* Leaves out particles beyond a region. The region reaches `half` to either side of the median of
- * sampled fluid, along each axis. Fails if there is no such particle, or too many; the error
- * sentence is set already. */
+ * sampled fluid, along each axis. Fails if no particle or too many would be left out, or no fluid
+ * would stay; the error sentence is set already. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, double half)
 {
   const mcor_sample_list* samples = &context->samples[0];

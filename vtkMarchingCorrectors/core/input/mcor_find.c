@@ -226,7 +226,7 @@ static const char* mcor_called(mcor_finder* f, const char* words, const char* na
   return called ? called : words;
 }
 
-/* Returns the index if the array exists and has numbers for all particles; else -1. */
+/* Returns the index if the array exists and has numbers for all particles; else an error and -1. */
 static int mcor_check_named(mcor_finder* f, const char* words, const char* name, int index)
 {
   if (index < 0)
@@ -544,8 +544,8 @@ static void mcor_find_column(mcor_finder* f)
   mcor_take_role(f, MCOR_ROLE_WEIGHT, "weight", 1);
 }
 
-/* Finds velocities by their usual names: an array of three components, three arrays, or, in a plane, an array of two
- * components. */
+/* Finds velocities by their usual names: an array of three components, else vx, vy and vz, else an
+ * array of two components. */
 static int mcor_find_velocity(mcor_finder* f)
 {
   const int64_t count = f->positions->tuples;
@@ -554,8 +554,8 @@ static int mcor_find_velocity(mcor_finder* f)
   return index < 0 ? mcor_find_named(f->arrays, f->count, MCOR_VELOCITY, 2, count) : index;
 }
 
-/* Adds the velocity and the density to the attributes. The density is an array or one value, else
- * mass / volume. */
+/* Adds the velocity and, if it is known, the density to the attributes. The density is an array or
+ * one value, else mass / volume. */
 static void mcor_find_flow(mcor_finder* f)
 {
   mcor_found* found = f->found;
@@ -586,7 +586,7 @@ static void mcor_find_flow(mcor_finder* f)
   }
 }
 
-/* Whether a name stands in a list of names, one a line. */
+/* Whether a name stands in a list of names, each on a line of its own. */
 static bool mcor_is_listed(const char* list, const char* name)
 {
   const size_t length = strlen(name);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds which particles are fluid: by the array that the caller names, else by an array whose name and values leave
- * no doubt. Also finds which particles are left out altogether. */
+/* Finds which particles are fluid: by the array that the caller names, else by an array whose name
+ * and values leave no doubt. Also finds which particles are left out altogether. */
 
 #include "mcor_finder.h"
 
@@ -108,7 +108,7 @@ static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count
   return is_clear;
 }
 
-/* Says that an array with several values of particle types is not used. */
+/* Returns a message that an array with several values of particle types is not used. */
 static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind* kinds, int count)
 {
   if (count < 2)
@@ -295,7 +295,7 @@ int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor
     bool varies = false;
     for (int c = 0; c < components && !varies; ++c)
     {
-      /* The component's least value, and minus its greatest, up to the first value that differs. */
+      /* The component's least value, and minus its greatest, until they show that it varies. */
       double ends[2] = { INFINITY, INFINITY };
       for (int64_t k = 0; k < a->tuples && !(ends[0] < -ends[1]); ++k)
       {

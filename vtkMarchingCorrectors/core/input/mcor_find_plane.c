@@ -87,14 +87,14 @@ static mcor_status mcor_refuse_plane(
  * of the spacing that they would have if spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
-/* Drops a plane that rounding made: its coordinate is so large that single precision rounds it by
- * about the particles' spacing, and most of the tested particles have a twin. */
+/* Drops a plane that rounding made: its coordinate is so large that steps of single precision are
+ * coarse for the particles' spacing, and most of the tested particles have a twin. */
 static mcor_status mcor_drop_rounded_plane(
   mcor_context* context, const mcor_input* input, mcor_plane* plane)
 {
   const mcor_array* x = &input->positions;
   const int axes[2] = { mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1) };
-  /* Ranges along both axes. Sums: particles; sampled ones; sampled ones with a twin. */
+  /* Ranges along both axes. Sums: particles; tested particles; tested particles with a twin. */
   mcor_findings found = mcor_no_findings();
   int64_t* counts = found.sums;
   if (plane->at == 0 || (double)(float)plane->at != plane->at)
@@ -158,8 +158,7 @@ static mcor_status mcor_look_for_plane(
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.most, 6));
   mcor_plane plane = { 0 };
   int constant = 0, fluid_planes = 0;
-  bool apart = false; /* the fluid lies in one plane and the solids in another, so two dimensions
-                       * were meant */
+  bool apart = false; /* fluid lies in one plane, solids in another: two dimensions were meant */
   for (int a = 0; a < 3; ++a)
   {
     const double low = fmin(spread.least[a], spread.least[3 + a]),

@@ -16,7 +16,7 @@
  * `name`, "_", "-", blanks and case do not matter. */
 bool mcor_is_usual_name(const char* name, const char* usual);
 
-/* Turns ASCII letters to small ones in any locale: in a Turkish one, tolower('I') is no i. */
+/* Returns the small letter of a letter in any locale; in a Turkish one, tolower('I') is no i. */
 static inline char mcor_small_letter(char c)
 {
   return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
@@ -48,15 +48,15 @@ static inline bool mcor_has_error(const mcor_finder* f)
   return f->found->error.code != MCOR_SAYS_NOTHING;
 }
 
-/* Returns the name that is given by hand for a role; NULL if it is "", or "(automatic)" or "(none)"
- * of panels. */
+/* Returns the name that is given by hand for a role; NULL if it is "", or "(automatic)" or
+ * "(none)", which panels use. */
 const char* mcor_given_name(const mcor_finder* f, mcor_role role);
 
-/* Finds the array of this name without checking it; -1: there is none. */
+/* Returns the index of the array of this name, without checking the array; -1: there is none. */
 int mcor_find_by_name(const mcor_finder* f, const char* name);
-/* Finds the array of this name; -1 and an error if it is missing or does not suit. components: 1:
- * the array must have one number for each particle; 0: any number of components. words: what the
- * array is for. */
+/* Returns the index of the array of this name; -1 and an error if it is missing or does not suit.
+ * components: 1: the array must have one number for each particle; 0: any number of components.
+ * words: what the array is for. */
 int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components);
 
 /* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */

@@ -3,8 +3,8 @@
 #ifndef mcor_input_h
 #define mcor_input_h
 
-/* Shared by the files that read the input. They read the caller's arrays as double: one element, or
- * a chunk of one component in a loop that compilers vectorise. */
+/* Functions for the files that read the input. The caller's arrays are read as double: one element,
+ * or a chunk of one component in a loop that compilers vectorise. */
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"
@@ -30,8 +30,8 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
     (context->kept.uses_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* Whether a particle counts as a neighbour and for the dimension: all do but absent ones and
- * ignored solids. */
+/* Whether a particle counts as a neighbour, and in the search for a plane. Absent particles and
+ * ignored solids do not count. */
 static inline bool mcor_is_present(const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||
@@ -93,7 +93,7 @@ static inline const char* mcor_array_name(const mcor_array* array, const char* r
 }
 
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
-/* Reads all coordinates of the next particles, at most MCOR_CHUNK. */
+/* Reads the coordinates of `count` particles, at most MCOR_CHUNK. */
 void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
 /* A chunk of particles. h: smoothing lengths; length: smoothing lengths times the factors of
@@ -128,8 +128,8 @@ static inline void mcor_add_range(mcor_findings* found, int k, double low, doubl
   found->most[k] = mcor_most(found->most[k], high);
 }
 mcor_findings mcor_merge_findings(const mcor_findings* slices, int count);
-/* Makes a context without a device, for functions of mcor.h that have none: it has threads and ranks,
- * and keeps an error. NULL: memory ran out. */
+/* Makes a context without a device, for functions of mcor.h that take no context: it has threads
+ * and ranks, and keeps an error. NULL: memory ran out. */
 mcor_context* mcor_make_bare_context(const mcor_options* options);
 void mcor_free_bare_context(mcor_context* context);
 /* Merges ranges and sums of all ranks, but not `first`. */
@@ -171,12 +171,12 @@ mcor_status mcor_leave_out_again(
  * of the positions of all particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
-/* If one smoothing length differs greatly from all others, names its particle in the sentence about
- * a lattice that is too large. */
+/* If the least or the greatest smoothing length differs much from the median, appends its particle
+ * to the error sentence, which says that a lattice is too large. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* Returns the first particle with a component that is not finite or, if `positive`, not above 0;
- * -1: none. Skips marked particles unless `solid` is NULL. */
+ * -1: none. skip, solid: as for mcor_find_range. */
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive);
 
@@ -187,7 +187,7 @@ size_t mcor_count_components(const mcor_input* input);
 mcor_status mcor_measure_components(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 
-/* Finds a value near the median of the scalar of fluid particles, whose range is known already. */
+/* Finds a value near the median of the fluid's scalar. The scalar's range must be known. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
 /* mcor_neighbour_sums.c. Returns the SPH kernel at distance q (in h), without the norm; for a
  * tensor kernel, the factor of one axis. */

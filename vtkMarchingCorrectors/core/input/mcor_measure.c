@@ -142,7 +142,7 @@ enum
   MCOR_KERNELS = 7, /* lengths of the kernels of all particles in use */
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9,      /* positions of all particles in use: x, y, z */
-  MCOR_FACTORS = 12,   /* factors of the smoothing lengths of fluid particles */
+  MCOR_FACTORS = 12,   /* widening factors of fluid particles */
   MCOR_OFF_PLANE = 13, /* distances from the watched particles' plane, along its normal */
 
   MCOR_FLUID = 0, /* counts of particles: sum k is for part k of a chunk */
@@ -291,8 +291,8 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   job->slices[slice] = r;
 }
 
-/* Measures the particles of all ranks. A particle that is not finite is reported by its own rank
- * alone. */
+/* Measures the particles of all ranks. A scalar that is not finite is reported only by the rank of
+ * its particle. */
 static mcor_status mcor_measure_particles(mcor_context* context, const mcor_input* input)
 {
   mcor_measure* m = &context->measure;
@@ -400,7 +400,7 @@ mcor_status mcor_measure_input(
   return mcor_measure_lattice(context, options);
 }
 
-/* An error sentence names a smoothing length that differs from the median by this factor. */
+/* Error sentences name smoothing lengths that differ from the median by more than this factor. */
 #define MCOR_OUTLIER 100
 
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input)

@@ -49,7 +49,7 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
     mcor_read_scalar(job->input, first, n, chunk);
     for (int i = 0; i < n; ++i)
     {
-      /* Both are halved, because their difference may overflow. */
+      /* Halves both values, because their difference may overflow. */
       part[i] = (0.5 * chunk[i] - 0.5 * job->low) / width * 2;
     }
     for (int i = 0; i < n; ++i)

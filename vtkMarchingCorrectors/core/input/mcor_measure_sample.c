@@ -51,7 +51,7 @@ typedef struct mcor_sampling
 {
   const mcor_context* context;
   const mcor_input* input;
-  mcor_sample_list found[MCOR_SLICES][2]; /* as in the context's samples */
+  mcor_sample_list found[MCOR_SLICES][2]; /* samples of fluid, of solids */
 } mcor_sampling;
 
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)

@@ -30,8 +30,7 @@
 typedef struct mcor_neighbour
 {
   double x[3], mass;
-  uint64_t place[3]; /* place along the curve: 62 bits of the extent; a particle outside takes its
-                      * end */
+  uint64_t place[3]; /* place along the curve: 62 bits of the extent, at its end if outside */
   int64_t source;
 } mcor_neighbour;
 
@@ -44,8 +43,7 @@ typedef struct mcor_neighbour_job
   double norm, support;
   double period[3];       /* 0: open */
   double extent;          /* the greatest length of the cut bounds or of a period */
-  int64_t count, wanted;  /* how many particles are present; how many of the input's first ones get
-                           * a result */
+  int64_t count, wanted;  /* particles present; the first `wanted` of the input get results */
   int64_t leaves;         /* leaves of the tree, a power of 2 */
   mcor_neighbour* sorted; /* [count] */
   double (*box)[6]; /* [2 * leaves]: low and high of x, y, z; node n has children 2 n, 2 n + 1 */
@@ -88,8 +86,8 @@ static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
 
 /* Compares particles along the curve. Particles at one place of the curve, such as all beyond a
  * corner of the extent, are compared along the curve of their coordinates' bits, which grow as the
- * numbers do. Equal particles are compared by their bytes, so that the input's order does not
- * matter. */
+ * numbers do. Particles with the same coordinates are compared by the bytes of their masses, so
+ * that the input's order does not matter. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -105,8 +103,7 @@ static int mcor_compare_neighbours(const void* a, const void* b)
   return order == 0 ? memcmp(p, q, offsetof(mcor_neighbour, place)) : order;
 }
 
-/* Adds a position to the samples, unless it is one of them already: ranks have copies of each other's
- * particles. */
+/* Adds a position to the samples unless they have it; ranks have copies of others' particles. */
 static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
 {
   bool is_new =
@@ -300,8 +297,8 @@ static double mcor_length_step(double h, int further)
   return ldexp(4 + quarter, (number - quarter) / 4 - 4);
 }
 
-/* Returns the smoothing length of sorted particle i. Finds it between two steps by false position
- * with some bisection. Neither the steps nor the result depend on the first guess. */
+/* Returns the smoothing length of sorted particle i, which lies between two steps. Uses false
+ * position with some bisection. Neither the steps nor the result depend on the first guess. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
@@ -332,9 +329,9 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
     low = mcor_length_step(low, -1);
     below = mcor_sum_at(job, x, low, list) - job->eta;
   }
-  if (above <= 0 || below >= 0) /* the longest length does not suffice, or too many particles are at
-                                 * one place */
+  if (above <= 0 || below >= 0)
   {
+    /* The longest length does not suffice, or too many particles are at one place. */
     return above <= 0 ? high : low;
   }
   for (int step = 1, last = 0; step < MCOR_LENGTH_STEPS && high - low > MCOR_LENGTH_ERROR * low;

@@ -84,7 +84,7 @@ MCOR_VECTOR_LOOPS static void mcor_read_stage_places(
   }
 }
 
-/* Lists the images of particle i of a chunk that are staged. */
+/* Lists which of particle i of a chunk and its periodic images are staged. Returns how many are. */
 static int mcor_images_of(
   const mcor_staging* staging, const mcor_stage_chunk* chunk, int i, mcor_images* images)
 {
@@ -107,8 +107,8 @@ static int mcor_images_of(
     staging->reach, at, mcor_reach_of(staging->reach, h, chunk->level[i]), images);
 }
 
-/* Marks the particles of [first, last) that may reach the box. Tests each coordinate without a
- * period once. Only few marked particles fail the exact test of their images later. */
+/* Marks the particles of [first, last) that may reach the box, by their coordinates along axes
+ * without a period. Only few marked particles fail the exact test of their images later. */
 static void mcor_mark_near(const mcor_staging* staging, int64_t first, int64_t last)
 {
   const mcor_reach_box* reach = staging->reach;
@@ -269,9 +269,9 @@ static double mcor_weight_limit(const mcor_context* context)
   return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
 }
 
-/* Stages a chunk from element *to on, and advances *to. Stages nothing from the first chunk on that
- * has a particle with too large a weight, or a particle beyond the measured bounds, on which all
- * later steps rely: the caller's arrays have changed. */
+/* Stages a chunk from element *to on, and advances *to. From the first chunk on with a particle
+ * whose weight is too large, or that is beyond the measured bounds, nothing is staged. Particles
+ * are beyond the bounds, on which all later steps rely, if the caller's arrays have changed. */
 static void mcor_stage_chunk_at(
   const mcor_staging* staging, mcor_stage_slice* slice, mcor_stage_chunk* chunk, int64_t* to)
 {
@@ -359,7 +359,7 @@ static void mcor_stage_images(const mcor_staging* staging, mcor_stage_slice* sli
   }
 }
 
-/* Whether sizes are areas, which become volumes times the smoothing length, see mcor_size_scale. */
+/* Whether sizes are areas; areas times smoothing lengths are volumes, see mcor_size_scale. */
 static bool mcor_are_areas(const mcor_staging* staging)
 {
   return staging->context->space.flat && !mcor_needs_density(staging->input);
@@ -496,8 +496,8 @@ static mcor_status mcor_check_staged(const mcor_staging* staging, int slices)
   return MCOR_OK;
 }
 
-/* Particles that are staged while the portion before is copied to a device with memory of its
- * own. */
+/* How many particles are staged at a time for a device with memory of its own. Meanwhile the
+ * particles staged before are copied. */
 #define MCOR_STAGE_PORTION (1 << 18)
 
 static mcor_status mcor_stage_all(mcor_staging* staging)
@@ -570,7 +570,6 @@ mcor_status mcor_stage(mcor_staging* staging)
     staging->reach = &reach;
     const double widest = context->run.widest;
     const bool computes = mcor_needs_density(input);
-    /* Whether the reach is widened at all. */
     const bool widens = mcor_reach_around(options, computes, widest, 1, 2) > 0;
     const int slices = widens
       ? mcor_parallel_for(context, input->count, MCOR_HEAVY_GRAIN, mcor_find_reaching, staging)

@@ -32,8 +32,7 @@ typedef struct mcor_staging
   int view_count;
   int64_t begin;            /* the first particle of the portion that is being staged */
   double size_scale;        /* see mcor_size_scale */
-  double h_max;             /* the greatest unscaled length of a kernel that was measured, with
-                             * rounding */
+  double h_max;             /* greatest measured length of a kernel, unscaled, rounded up */
   mcor_reach_box* reach;    /* NULL: all particles are needed */
   bool one_inv_h, one_size; /* whether all elements of these arrays are known to be the same */
   uint8_t* images;          /* by particle: whether an image is staged; NULL without reach */

@@ -30,8 +30,8 @@ typedef struct mcor_suspicion
 
 /* A nearest particle may be very near by chance. So smoothing lengths are called too long only if
  * there are also many neighbours in all: more than this number times (support / smoothing
- * length)^3. If the ratio is above MCOR_SHEET_RATIO, the lower limit suffices, because sheets and
- * drops have few neighbours. */
+ * length)^3. Above MCOR_SHEET_RATIO, the limit is MCOR_SHEET_NEIGHBOURS, because sheets and drops
+ * have few neighbours. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
@@ -169,7 +169,7 @@ static mcor_message mcor_warn_period(const mcor_suspicion* s)
   return MCOR_NO_MESSAGE;
 }
 
-/* Warns of a plane, unless rounding made it. */
+/* Warns if particles in three dimensions lie in a plane, unless rounding made the plane. */
 static mcor_message mcor_warn_plane(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -196,7 +196,7 @@ static mcor_message mcor_warn_plane(const mcor_suspicion* s)
 }
 
 /* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies
- * between the particles' values; a sum lies between 0 and somewhat above these. */
+ * between the particles' values. A sum may also be 0, or lie somewhat beyond the values. */
 static mcor_message mcor_warn_iso_value(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -208,7 +208,7 @@ static mcor_message mcor_warn_iso_value(const mcor_suspicion* s)
   int outside = 0, first = 0;
   for (int i = 0; i < o->iso_count; ++i)
   {
-    /* a region may be filled from below all values on */
+    /* a filled region may begin below all values */
     const bool is_outside = (o->iso_values[i] < low && !o->filled) || o->iso_values[i] > high;
     first = is_outside && outside == 0 ? i : first;
     outside += is_outside;
@@ -252,7 +252,7 @@ static mcor_message mcor_warn_discarded(const mcor_suspicion* s)
     : MCOR_NO_MESSAGE;
 }
 
-/* Says which threshold may have removed all of an empty surface. */
+/* If the surface is empty, says which threshold may have removed all of it. */
 static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;

@@ -22,11 +22,11 @@
 /* The lines of one iso value, after trimming. */
 typedef struct mcor_fill_line
 {
-  double iso, value; /* iso: relative to A0, as on the device; value: the caller's iso value */
+  double iso, value; /* iso: less context->value_shift, as on the device; value: the caller's */
   int iso_number;
   int vertex_count, cut_count;
   mcor_table edges;        /* the line's vertices by lattice edge */
-  mcor_table joined;       /* lowest nodes of ambiguous squares that join their nodes above */
+  mcor_table joined;       /* lowest nodes of ambiguous squares that join their two nodes above */
   double *offset, *margin; /* [vertex_count]: position along the edge; trim margin */
   cl_ulong* cuts;          /* [cut_count], see mcor_trim.cl; ascending */
   int32_t* number;         /* [vertex_count + cut_count]: number of the surface's point; -1: none */
@@ -61,7 +61,7 @@ typedef struct mcor_filling
 {
   mcor_fill_line* lines; /* [line_count], ascending by iso value, without repetitions */
   int line_count;
-  mcor_cap_nodes nodes; /* the plane's nodes, kept like nodes of an upper cap side */
+  mcor_cap_nodes nodes; /* the plane's nodes, stored as nodes of caps are */
   int32_t* band;        /* [nodes.node_count]: number of iso values that the node reaches */
   int32_t* number;      /* points of the surface at nodes, then at cuts; -1: none */
   mcor_cap_job cap;     /* vertices: points where trimming ends the region */
@@ -362,7 +362,7 @@ static mcor_status mcor_add_polygon(mcor_filling* fill, int i)
 
 /* ---- Squares ---- */
 
-/* A square is filled if all its nodes are valid, and any of them is above the lowest level. */
+/* A square is filled if all its nodes are valid, and any of them is above the lowest iso value. */
 static mcor_status mcor_visit_fill_square(
   void* data, const mcor_cap_nodes* nodes, int64_t lowest, const cl_int node[3])
 {

@@ -135,7 +135,7 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Across the plane, the bounds are the plane's coordinate less and plus the largest support. */
+/* Across the plane, the bounds are the plane's coordinate minus and plus the largest support. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;
@@ -206,8 +206,7 @@ static mcor_status mcor_read_lines(
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
-    if (t[0] != t[2] && mcor_is_line(t)) /* skips the second half of a quad that stands for a
-                                          * line */
+    if (t[0] != t[2] && mcor_is_line(t)) /* skips the second half of a quad of one line */
     {
       const int32_t from = t[1] == t[2] ? t[0] : t[2], to = t[1];
       at[from].next = to;

@@ -36,7 +36,7 @@ mcor_status mcor_find_plane(
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
 /* Turns positions into the plane. *turned becomes an array of the values *flat, which the caller
- * frees. are_points: the positions are no particles, so those off the plane become NaN. */
+ * frees. are_points: the positions are points, not particles; points off the plane become NaN. */
 mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* positions,
   int64_t count, bool are_points, mcor_array* turned, double** flat);
 /* Turns the sides of a box. Across the plane, the box becomes infinite if it contains the plane,

@@ -61,7 +61,7 @@ public:
   /** The point array of velocities, with three components. Empty (the default): found by name. */
   vtkSPHTextMacro(VelocityArrayName, "");
 
-  /** Positions follow the velocities; off, they are linear in time. On by default. */
+  /** Positions follow the velocities; if this is off, positions are linear in time. On by default. */
   vtkSPHFlagMacro(UseVelocities, 1);
 
   /**

@@ -24,7 +24,7 @@ extractor.Writer.DataMode = "Binary"  # Small appended data cannot be read with 
 
 
 def catalyst_execute(info):
-    """Is called once a step, before the extracts are written."""
+    """ParaView calls this once a step, before it writes the extracts."""
     surface.UpdatePipeline(info.time)
     print(f"step {info.timestep}, time {info.time:g}: {surface.GetDataInformation().GetNumberOfCells()} triangles",
           flush=True)

@@ -237,13 +237,13 @@ def method():
     value = 0.5 + 0.5 * np.tanh(3 * (3.2 - at[:, 0] + 1.2 * np.sin(1.1 * at[:, 1])))
 
     def sums(point, h=1.3):
-        """Returns the weight sum, and the Shepard mean."""
+        """Returns the weight sum, and the Shepard mean, at a point."""
         q = np.hypot(*(at - point).T) / h
         w = 10 / (7 * np.pi * h * h) * (0.25 * np.maximum(2 - q, 0) ** 3 - np.maximum(1 - q, 0) ** 3)
         return w.sum(), (w * value).sum() / max(w.sum(), 1e-12)
 
     def root(a, b, which, wanted):
-        """Returns where one of the sums has the wanted value, between the points a and b."""
+        """Returns a point between a and b where the weight sum (which: 0) or the Shepard mean (1) has the wanted value."""
         for _ in range(50):
             middle = (a + b) / 2
             a, b = (middle, b) if (sums(middle)[which] > wanted) == (sums(a)[which] > wanted) else (a, middle)

@@ -319,8 +319,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 choice.FreeSurface = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice)).has_free_surface()
 
     def _look_at(self, points, ahead):
-        """Adds to `ahead` what these points tell. No value needs all arrays: the scalar's range is found without smoothing
-        lengths, and the number of cells without a scalar."""
+        """Adds to `ahead` what these points tell. Each value needs only some of the arrays: the scalar's range is found without
+        smoothing lengths, and the number of cells without a scalar."""
         choice = self._choice()
         self._settle(choice, points)
         with suppress(Error):

@@ -68,7 +68,7 @@ vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 std::string vtkSPHTakeText(char* text);
 /** Returns a sentence of the core with its slots filled, see vtkSPHAlgorithm::SetWord(), and frees the core's text. */
 std::string vtkSPHTakeText(mcor_message message);
-/** The function that returns the word for a slot of a sentence. */
+/** The function that gives the words for a sentence's slots, such as {cube_size}, see vtkSPHAlgorithm::SetWord(). */
 extern mcor_word vtkSPHWord;
 
 /** Makes a VTK array that points to these values. The caller still owns and frees them. */

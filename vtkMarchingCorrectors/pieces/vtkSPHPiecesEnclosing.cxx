@@ -166,7 +166,8 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
 }
 }
 
-// Lists the shifts from a point in the period to its images where pieces with (or without) volume may be.
+// Lists the shifts from a point in the period to its images that may lie in pieces. hasVolume: in
+// pieces with a volume, else in pieces without.
 std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
 {
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };

@@ -227,8 +227,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   arrays = vtkSPHSendTuples(ranks, arrays, to, &from);
   const vtkIdType own = arrays[0]->GetNumberOfTuples();
 
-  // Computes sums for the first `count` particles; all particles are neighbours. Returns false if a
-  // rank failed.
+  // Computes the sums of the first `count` particles over all particles. Returns false if a rank failed.
   const auto sum = [&](vtkIdType count, double* sums)
   {
     this->CallAside(

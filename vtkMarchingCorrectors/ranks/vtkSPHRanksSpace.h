@@ -70,10 +70,10 @@ public:
   /** Returns a rank's box in the form of mcor_options; it may hold nothing. */
   vtkSPHRanksBox GetBox(int rank) const;
 
-  /** Returns the rank whose box holds a place, or an image of it. */
+  /** Returns the rank whose box holds a place, or an image of the place. */
   int FindOwner(const double at[3]) const;
 
-  /** Lists, for each rank's box, the points of this rank that lie in it. */
+  /** Lists, for each rank, the points of this rank that lie in the listed rank's box. */
   vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
 
   vtkSPHRanksBox Whole = {};       ///< holds all ranks' boxes

@@ -30,8 +30,8 @@ const char* const WallArrayName = "IsWall";
 namespace
 {
 
-/// Returns one array in the fluid's type: the fluid's values, then the walls'. Walls without a
-/// fitting array get each component's median; 0 in vtkGhostType, because walls are not copies.
+/// Returns one array in the fluid's type: the fluid's values, then the walls'. Walls without a fitting array
+/// get the fluid's median of each component; in vtkGhostType they get 0, because walls are not copies.
 vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, vtkIdType wallCount)
 {
   const vtkIdType count = fluid->GetNumberOfTuples();

@@ -10,9 +10,9 @@
 #include <stdlib.h>
 
 /* How many cells the table has from the centre to the end of the support. The fine table serves if
- * pixels are smaller than MCOR_SMALL_PIXEL times h. Errors fall at least with the third power of a
- * cell's size: at h = 3 pixels they are about 1e-8 of the greatest value, at h = 50 pixels below
- * 1e-6. */
+ * pixels are smaller than MCOR_SMALL_PIXEL times the greatest h. Errors fall at least with the
+ * third power of a cell's size: if h is 3 pixels, errors are about 1e-8 of the greatest value; if h
+ * is 50 pixels, below 1e-6. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125

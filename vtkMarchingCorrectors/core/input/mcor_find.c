@@ -313,7 +313,8 @@ static mcor_message mcor_no_length(mcor_finder* f)
     usual ? usual : "", mcor_names_of(f));
 }
 
-/* Finds the value or the array that is given for a quantity, else an array with a usual name. */
+/* Finds the value or the array that is given for a quantity, else, if request->find is set, an
+ * array with a usual name. */
 static void mcor_find_quantity(mcor_finder* f, mcor_role role)
 {
   static const char* const words[MCOR_ROLE_VALUES] = { "smoothing length", "volume", "mass",

@@ -67,7 +67,7 @@ static int mcor_add_kind(mcor_kind* kinds, int count, mcor_kind kind)
 }
 
 /* Counts how often each value of an array occurs on all ranks. Returns how many values there are;
- * 0: too many. */
+ * 0: too many, or a rank has failed. */
 static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_kind* kinds)
 {
   mcor_kind own[MCOR_KINDS];

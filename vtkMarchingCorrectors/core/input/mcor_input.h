@@ -138,7 +138,7 @@ mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
 /* Finds the range of one component, as range 0 of the result. skip: which of the particles that
- * `solid` marks are left out; none is if `solid` is NULL. */
+ * `solid` marks are left out. If `solid` is NULL, none is. */
 mcor_findings mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, int component);
 /* Returns the largest absolute value in a range; 0 if the range is empty. */
@@ -151,8 +151,8 @@ static inline double mcor_largest_of(double low, double high)
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
-/* mcor_far.c. Serves a call whose lattice is too long: marks far particles as absent, in far->solid,
- * so that a shorter lattice holds the others. Fails as before if too many would be absent. */
+/* mcor_far.c. Serves a call whose lattice is too long: marks far particles as absent, in
+ * far->solid, so that a shorter lattice holds the others. Fails if too many would be absent. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {
@@ -171,8 +171,8 @@ mcor_status mcor_leave_out_again(
  * of the positions of all particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
-/* If the least or the greatest smoothing length differs much from the median, appends its particle
- * to the error sentence, which says that a lattice is too large. */
+/* Called when capacity does not suffice. If the least or the greatest smoothing length differs much
+ * from the median, appends its particle to the error sentence. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* Returns the first particle with a component that is not finite or, if `positive`, not above 0;

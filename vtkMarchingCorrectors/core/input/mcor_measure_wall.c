@@ -113,8 +113,8 @@ static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Returns the share at which half of the fluid's weight is counted, at least 0.01 and at most 0.99.
- * Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
+/* Returns the median of the solids' shares, weighted by the fluid at the samples, but at least 0.01
+ * and at most 0.99. Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
 static double mcor_median_share(mcor_wall_measure* wall)
 {
   double sum = 0, median = INFINITY;

@@ -74,7 +74,7 @@ public:
     std::vector<std::uint64_t> Signature;
     std::uint64_t Version = 0;
 
-    /** Keeps this signature. Returns whether the data have changed; with isOther, they always have. */
+    /** Keeps this signature. Returns whether the data have changed; if isOther is set, they count as changed. */
     bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false)
     {
       isOther = isOther || signature != this->Signature;

@@ -129,7 +129,7 @@ def leaves_of(tree, empty=False):
 
 
 def copy_of(data):
-    """Returns another set with the same arrays, or another tree with the same blocks, also before VTK 9.3."""
+    """Returns a shallow copy: a set with the same arrays, or a tree with the same blocks. Works before VTK 9.3, too."""
     made = data.NewInstance()
     getattr(made, "CompositeShallowCopy", made.ShallowCopy)(data)
     return made

@@ -26,7 +26,7 @@ namespace
 {
 /** All particles within this number of support radii around a particle must be known, see mcor_find_smoothing_lengths. */
 constexpr double Around = 1.25;
-/** Allows for the rounding of places in periods. */
+/** Radii are multiplied by this number, because places that are moved into the period are rounded. */
 constexpr double Rounding = 1.0001;
 
 /** The arrays of an input that are sent to other ranks. */

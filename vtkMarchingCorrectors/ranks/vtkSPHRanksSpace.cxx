@@ -26,7 +26,7 @@ constexpr double CellLimit = 1 << 18;
 /** Least edge of a cell of the coarse grid, in median smoothing lengths. */
 constexpr double CellLengths = 2.0;
 
-/** The cost of a cube with surface, in costs of a particle. */
+/** A cube through which the surface passes costs as much as this number of particles. */
 constexpr double CubeWork = 40.0;
 
 /** A cell has far fewer particles than another if it has less than 1 / FarFewer of the other's number. */

@@ -30,7 +30,7 @@ void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T...), T... values)
   }
 }
 
-/// Returns the place of the "=" in NAME=...
+/// Returns the index of the last "=" in NAME=... Throws UsageError if there is none, or no name before it.
 std::size_t NameEnd(Text option, Text text, const char* form)
 {
   const std::size_t equals = text.rfind('=');

@@ -285,7 +285,7 @@ def read_pysph(path, file):
     solid = np.repeat(walls, counts)
 
     def array(name):
-        """Returns one array of all sets; 0 for walls that lack it, because walls take no part in a field."""
+        """Returns one array of all sets; 0 for walls that lack the array, because walls take no part in a field."""
         there = [name in each for _, each in sets.values()]
         found = load([part for part, has in zip(parts, there) if has], name)
         if all(there):

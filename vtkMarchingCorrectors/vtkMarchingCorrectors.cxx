@@ -75,7 +75,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
     std::copy(this->Box, this->Box + 6, options.box);
     // The core takes a box of zeros as no box. Here the user wants a box but has set zeros, so a
     // tiny number makes the core refuse the box.
-    options.box[0] += mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
+    options.box[0] -= mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
   }
   options.filled = this->Filled;
   options.capping = !this->Capping ? MCOR_CAP_NONE : this->UseBox ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;

@@ -12,6 +12,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <limits>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -50,6 +51,10 @@ mcor_view vtkSPHProjection::MakeView() const
   mcor_view view = {};
   std::copy_n(this->Direction, 3, view.direction);
   std::copy_n(this->Box, this->UseBox ? 6 : 0, view.box);
+  if (this->UseBox && std::count(view.box, view.box + 6, 0.0) == 6) // zeros would mean "no box"
+  {
+    view.box[0] = -std::numeric_limits<double>::denorm_min();
+  }
   view.resolution = this->Resolution;
   return view;
 }

@@ -459,7 +459,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         if not choice.CubeSizeMode:  # uniform
             options.level_limit = 0
         if choice.UseBox and not any(choice.Box):
-            options.box[0] = 5e-324  # The core refuses this, as for the C++ filter, but would take zeros for no box.
+            options.box[0] = -5e-324  # The core refuses this, as for the C++ filter, but would take zeros for no box.
         options.capping = (2 if choice.UseBox else 1) if choice.Capping else 0  # MCOR_CAP_BOX, MCOR_CAP_PERIOD
         ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (
             choice.Solids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO

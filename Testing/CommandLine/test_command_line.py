@@ -199,6 +199,7 @@ class BadData(CommandLineTest):
             (["--scalar", "Temperature", "--iso", "1"], says("NO_SUCH_ARRAY", "'Temperature'", "Radius")),
             (["--derive", "Nonsense", *ISO], says("NO_SUCH_ARRAY", "'Nonsense'", "Radius")), ([*ISO, "--attributes", "Kind,Colour"], "'Colour'"),
             ([*ISO, "--cube-size", "1e-5"], says("BLOCKS_TOO_MANY", "--cube-size")),
+            ([*ISO, "--box", "0,0,0,0,0,0"], says("BOX_ILLEGAL", "--box along y are 0 and 0")),
             ([*ISO, "--device", "nonesuch"], says("NO_SUCH_DEVICE", "nonesuch")), ([*ISO, "--device", "99"], says("NO_SUCH_DEVICE", "99"))])
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)

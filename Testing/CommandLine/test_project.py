@@ -113,7 +113,8 @@ class Project(CommandLineTest):
         self.refuse_all(1, [(["--scalar", "Nope"], "no point array 'Nope' for the projection"),
                             (["--scalar", "Velocity", "--component", "3"], "no component 3"),
                             (["--weighted-by", "Velocity"], "3 components"), (["--weighted-by", "Nope"], "'Nope' for the weight"),
-                            (["--smoothing-length", "Nope"], "Nope"), (["--box", "0,0,0,1,0,1"], says("BOX_ILLEGAL", "--box along x"))],
+                            (["--smoothing-length", "Nope"], "Nope"), (["--box", "0,0,0,1,0,1"], says("BOX_ILLEGAL", "--box along x")),
+                            (["--box", "0,0,0,0,0,0"], says("BOX_ILLEGAL", "--box along y"))],
                         "--project", "z")
         self.refuse(self.run_program(self.input, "surface.vtp", "--project", "z"), 2, r"\.vti or \.vtk file, or .pvd for a film, not 'surface.vtp'")
         self.refuse(self.run_program(self.input, self.input, "surface.vti", "--project", "z"), 2, "%04d in its name, unlike 'surface.vti'")

@@ -31,7 +31,7 @@
  * may be greater, because errors of many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
-/* The most halvings of a cell; the most if it is unclear whether the level crosses the piece. */
+/* The most halvings of a cell: of any, and of one that the level may cross between its samples. */
 #define MCOR_FLUX_DEPTH 24
 #define MCOR_FLUX_UNCLEAR_DEPTH 12
 /* The second derivative of a weight is about 4 / h^2. So the weight between two samples may differ

@@ -9,7 +9,7 @@
  *
  *   c(s)  = sum V_k W(x_j - x_k, s h_j)      the weight sum at particle j with its length times s
  *   n_k   = max(0, 1 - (r_jk / 2 h_j)^3), k other than j; N = sum n_k: the neighbours of j
- *   m     = |sum n_k (x_k - x_j)| / (max(N, 1) h_j): how far their middle is from particle j
+ *   m     = |sum n_k (x_k - x_j)| / (max(N, 1) h_j): how far the neighbours' middle is from j
  *   taper = ramp(N, 2.2, 4.5)
  *   sided = ramp(m, 0.4, 0.6) (1.5 ramp(N, 4.5, 6) - 0.5)
  *   least = iso + 0.1 (1 - sided) - 0.08 max(sided, 0) ramp(c(widest), iso - 0.16, iso - 0.08)

@@ -45,7 +45,7 @@ typedef struct mcor_fill_triangle
 typedef struct mcor_fill_corner
 {
   mcor_cap_corner corner; /* must be the first member; vertex: a corner of mcor_fill_triangle */
-  int level;              /* level of the line; -1: the corner is a node */
+  int level;              /* index of the line in `lines`; -1: the corner is a node */
   bool begins_line;       /* in the current polygon, a line leads to the next corner */
   int32_t vertex;
   bool falls; /* at this corner, the border goes from above the line to below it */

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _same(one, other):
-    """Whether two arrays have the same elements, NaN included."""
+    """Whether two values are equal: of arrays type, shape and bits, NaN included, of dictionaries the entries."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return type(one) is type(other) and one.shape == other.shape and one.dtype == other.dtype \
             and one.tobytes() == other.tobytes()

@@ -56,7 +56,7 @@ const char* mcor_names_of(mcor_finder* f)
 
 static const mcor_named* mcor_named_of(const mcor_finder* f, int index)
 {
-  return index < f->count ? f->arrays + index : f->found->made + index - f->count;
+  return index < f->count ? f->arrays + index : f->found->made + (index - f->count);
 }
 
 const char* mcor_keep_name(mcor_finder* f, const char* name)

@@ -34,6 +34,7 @@
 #include "vtkSMProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTransferFunctionManager.h"
 #include "vtkSMTransferFunctionProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSMVectorProperty.h"
@@ -481,8 +482,16 @@ void pqSPHInUse::colourLate()
       : "";
     if (proxy && active && colour == before && before != this->Colour)
     {
+      vtkSMProxy* view = shown->getViewProxy();
+      vtkSMProxy* oldColours = vtkSMPropertyHelper(proxy, "LookupTable").GetAsProxy();
+      const bool hasLegend = view && (before.isEmpty() || proxy->IsScalarBarVisible(view));
       proxy->SetScalarColoring(active->GetName(), vtkDataObject::POINT);
       proxy->RescaleTransferFunctionToDataRange();
+      if (hasLegend)
+      {
+        vtkNew<vtkSMTransferFunctionManager>()->HideScalarBarIfNotNeeded(oldColours, view);
+        proxy->SetScalarBarVisibility(view, true);
+      }
       shown->renderViewEventually();
     }
     if (!this->Coloured.contains(shown) && active)

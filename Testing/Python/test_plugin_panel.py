@@ -122,6 +122,7 @@ def empty_first(folder):
         change(value, "set_string", "0.5"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
         # The array that gives the colours follows the mode until the user chooses another one.
         change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Vorticity"),
+        *save_state(f"{folder}/legend.pvsm"),
         change("FreeSurface/CheckBox", "set_boolean", "true"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
         (COLOUR, "set_string", "Pressure"), PAUSE,
         change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Pressure"),
@@ -177,6 +178,14 @@ def check_colours(file):
     assert abs(points[0] - 0.748) < 0.01 and abs(points[-4] - 2.185) < 0.01, points
 
 
+def check_legend(file):
+    """The legend shown is that of the array that gives the colours, though the colours were those of another array before."""
+    bars = [{p.get("name"): [e.get("value") for e in p.findall("Element")] for p in bar.findall("Property")}
+            for bar in xml.parse(file).findall(".//Proxy[@type='ScalarBarWidgetRepresentation']")]
+    titles = [bar["Title"] for bar in bars if bar["Visibility"] == ["1"]]
+    assert titles == [["Vorticity"]], titles
+
+
 # Beginnings of the names of properties that the panel only shows.
 SHOWN = ("Next", "Used", "Estimated", "ColorRanges", "MessageCount", "FluidScalarRange", "Statistics", "SurfaceMeasures")
 
@@ -217,6 +226,7 @@ def main(paraview):
         run(paraview, empty_first(folder) + first_apply(folder) + later_applies(folder) + plot_over_time(folder), folder)
         check_chart(f"{folder}/chart.pvsm")
         check_colours(f"{folder}/applied.pvsm")
+        check_legend(f"{folder}/legend.pvsm")
         second = xml.parse(os.path.join(folder, "second.pvsm"))
         names = [item.get("name") for item in second.findall(".//ProxyCollection[@name='sources']/Item")]
         assert sorted(name for name in names if "SPH" in name) == ["SPHContour1", "SPHContour2"], names

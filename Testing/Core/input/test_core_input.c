@@ -87,7 +87,9 @@ static void test_types(void** state)
 #define OPTION(member, usual, legal, words, scope, Property)                                       \
   static void set_##member(mcor_options* options, double value)                                    \
   {                                                                                                \
-    options->member = (__typeof__(options->member))value;                                          \
+    options->member = (__typeof__(options->member))_Generic(options->member, double                \
+                                                            : value, default                       \
+                                                            : (long)value);                        \
   }
 #include "mcor_options.def"
 

@@ -117,6 +117,10 @@ class Film(CommandLineTest):
                                   (["--fps", "1e9"], "more than a million frames"), (["--slow", "2"], "--fps"),
                                   (["--fps", "2", "--times", "0"], "--times")):
             self.one_sentence(self.run_program(*film, *options), 2, sentence)
+        stored = [0, 1e-13, 1]  # No stored step is taken for the one before it.
+        files.write_pvd(self.directory / "steps.pvd", zip(stored, (path.name for path in paths)))
+        self.good("steps.pvd")
+        self.assertEqual([time for time, _ in self.listed()], stored)
 
     def test_points_over_time(self):
         """With several steps and a .csv output, --probe writes a row for each step and point; cells are empty where there is no fluid."""

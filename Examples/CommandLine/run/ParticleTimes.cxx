@@ -26,6 +26,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
 
 namespace
@@ -121,6 +122,12 @@ void AddStepWalls(
 std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 {
   std::vector<double> times = job.Times;
+  if (!job.HasTimes())
+  {
+    std::transform(steps.begin(), steps.end(), std::back_inserter(times),
+      [](const ParticleTimes::Step& step) { return step.Time; });
+    return times;
+  }
   const double begin = steps.front().Time, end = steps.back().Time;
   if (job.FramesPerSecond > 0.0)
   {
@@ -133,10 +140,6 @@ std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
     {
       times.push_back(begin + i * frame);
     }
-  }
-  for (std::size_t i = 0; !job.HasTimes() && i < steps.size(); ++i)
-  {
-    times.push_back(steps[i].Time);
   }
   for (double& time : times)
   {

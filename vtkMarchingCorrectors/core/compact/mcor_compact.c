@@ -169,8 +169,8 @@ static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
   bunches->slice_left[slice] = to - first;
 }
 
-/* Keeps what is left of the triangles. Copies each appended vertex that is still in use to the place
- * of the vertex that it replaces. */
+/* Removes triangles that vanished. Copies each appended vertex that is still in use to the place of
+ * the vertex that it replaces. */
 static mcor_status mcor_end_bunches(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;

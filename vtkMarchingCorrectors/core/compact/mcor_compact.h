@@ -14,9 +14,9 @@
  * and caps, and leaves the borders of both as they are. */
 mcor_status mcor_compact(mcor_context* context);
 
-/* MCOR_COMPACT_RING: the vertices in a box depend on so many cells around the box. Four of these
- * cells decide whether a vertex is merged, two more for each round of taking bunches apart, four
- * whether a vertex moves, and one decides the normals of triangles. */
+/* MCOR_COMPACT_RING: the width, in cells, of the ring around a box on which vertices in the box
+ * depend. Whether a vertex is merged takes four cells, each round of taking bunches apart two more,
+ * whether a vertex moves four, and the normals of triangles one. */
 #define MCOR_COMPACT_ROUNDS 2
 #define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 9)
 
@@ -41,12 +41,12 @@ typedef struct mcor_bunch_vertex
 {
   uint64_t key;                /* the lattice node that the vertex belongs to, or MCOR_FROZEN */
   _Atomic int32_t first, next; /* its bunch's first vertex; another vertex of the bunch, or -1 */
-  int32_t star;                /* of a bunch: a corner of its last triangle; see `before` below */
+  int32_t star;                /* of a bunch: end of its list of triangles, see `before`; or -1 */
   int32_t now;        /* the present place in the mesh of the vertex, or of its merged bunch */
   atomic_uchar state; /* of a bunch */
   atomic_bool wide; /* the vertex, or its merged bunch, may move: it is a sliver's widest corner */
-  bool held;        /* keys of cuts refer to the vertex, even if it is merged */
-  bool leans;       /* of a bunch: it is merged only as long as all sure bunches beside it are */
+  bool held;        /* keys of cuts refer to the vertex: it may merge, but does not move alone */
+  bool leans;       /* of a bunch: it is taken apart if a bunch beside it is */
 } mcor_bunch_vertex;
 
 /* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX lattice edges. So sums
@@ -57,9 +57,9 @@ typedef struct mcor_point
 {
   int64_t at[3];
   cl_int node[4];
-  int32_t replaces; /* of an appended vertex: the vertex, or the first of the bunch */
+  int32_t replaces; /* of an appended vertex: the vertex that it replaces, see mcor_compact.c */
   float uphill[3];  /* unit gradient, or 0 without a gradient */
-  bool missed;      /* a vertex that moved on a line did not reach the surface */
+  bool missed;      /* the correction did not bring the vertex onto the surface */
 } mcor_point;
 
 /* A vertex, or the first vertex of a merged bunch, that is to be corrected on a line from `at`. */
@@ -74,26 +74,26 @@ typedef struct mcor_bunches
 {
   mcor_context* context;
   int corners;    /* 3: of a triangle; 2: of a line */
-  double edge[3]; /* of the lattice, in cubes */
+  double edge[3]; /* lengths of the lattice's edges, in cubes */
   /* The mesh before merging. */
   int march_count, vertex_count, triangle_count;
   cl_int* triangles;     /* [triangle_count][3] */
   mcor_bunch_vertex* of; /* [vertex_count] */
-  int32_t*
-    before; /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the
-                    * bunch to a corner of the list's previous triangle; -1: there is none */
+  /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the bunch to a
+   * corner of the list's previous triangle; -1: there is none. */
+  int32_t* before;
   mcor_point* points; /* [point_count], of the mesh's vertices */
   int point_count;
   MCOR_LIST(mcor_start) starts;
-  /* For loops over vertices: views of the mesh's buffers or, of vertices that are being appended,
-   * their nodes, and where the lines begin on which they are corrected (real [][4]). */
+  /* What loops over vertices read or write: views of the mesh's buffers. While vertices are
+   * appended: node, their nodes; offset, where the lines of their correction begin (real [][4]). */
   void *node, *offset, *linear, *gradient, *ends;
   /* Along each axis, the node coordinates of the sides that caps close, then of the sides of the
    * period; vertices on these sides stay. -1: no such side. */
   int side[3][4];
   cl_ulong* cells; /* [triangle_count] if mcor_follows_cells, else NULL */
   cl_int* pairs;   /* of vertices: one that is replaced, then the one that replaces it */
-  /* The triangles that are left stand at the beginning of each slice. */
+  /* Each slice's first triangle, and the number of triangles left, which are moved there. */
   int64_t slice_first[MCOR_SLICES], slice_left[MCOR_SLICES];
 } mcor_bunches;
 
@@ -116,8 +116,8 @@ static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
   return mcor_is_merged(bunches, v) ? bunches->of[v].first : v;
 }
 
-/* Finds the places in the mesh of a triangle's or line's corners. Returns whether it is left after
- * merging: its corners must differ. */
+/* Finds the places in the mesh of the corners of a triangle, or line. Returns whether these places
+ * differ; if not, the triangle vanishes by merging. */
 static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_t place[3])
 {
   for (int c = 0; c < 3; ++c)
@@ -142,7 +142,7 @@ static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_
 mcor_status mcor_add_vertices(mcor_bunches* bunches);
 
 /* mcor_compact_bunch.c. Finds the bunches. First merges each bunch that can be merged whether or
- * not others are merged, then bunches that can be merged only as long as those stay merged
+ * not others are merged, then bunches that can be merged only while these first ones stay merged
  * (`leans`). Fills `starts` with the merged bunches. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 

@@ -18,7 +18,7 @@
 #include "mcor_cap.h"
 #include "mcor_compact.h"
 
-/* Most edges of a fan: one for each triangle around a bunch. A bunch with more stays apart. */
+/* Most edges of a mcor_fan, one for each triangle around a bunch. A bunch with more stays apart. */
 #define MCOR_FAN_LIMIT 48
 
 /* Least number of vertices that a closed piece keeps: 6 of a surface, with 8 triangles; 4 of a
@@ -30,8 +30,8 @@
 /* Gives each vertex the key of its node: the end of its edge that is nearer by linear
  * interpolation; if both are equally near, the lower end. The key contains the last bit of the
  * level: levels side by side differ by one, so nodes of different levels have different keys.
- * Vertices stay (MCOR_FROZEN) if they lie on a side, lie on the border that the node threshold
- * leaves, or belong to cuts or caps. */
+ * Vertices stay (MCOR_FROZEN) if they lie on a side that caps close, on a side of the period or on
+ * the border that the node threshold leaves, or if they belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -287,8 +287,8 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return count >= least;
 }
 
-/* Whether a bunch can be merged. If `all` is set: both with no other bunch merged and with all
- * others merged. Else: beside the bunches that are merged so far. */
+/* Whether a bunch can be merged. all: it can be merged both if no other bunch is merged and if all
+ * others are; else: it can be merged beside the bunches that are merged so far. */
 static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
 {
   mcor_fan fan, merged = { 0 };

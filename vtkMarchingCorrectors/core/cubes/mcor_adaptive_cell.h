@@ -10,8 +10,8 @@
  * corners are nodes. If a finer cell touches an edge, the edge is split into two halves, and its
  * middle is a node, too. If the cells across a face are finer, the face is split: its middle is a
  * node, and its four edges are split as well. Bits of `split` say which middles are nodes, bits of
- * `above` which nodes are above the iso value. A slot is a half-edge, axis << 5 | its lower node;
- * the vertex of an edge that is not split has the slot of the lower half.
+ * `above` which nodes are above the iso value. A slot is half of an edge, axis << 5 | its lower
+ * node; the vertex of an edge that is not split has the slot of the lower half.
  *
  * A split face consists of four quarters, the sub-faces. On a sub-face, and on the ring of 4 to 8
  * nodes around a face that is not split, one segment cuts off each run of nodes above the iso
@@ -36,7 +36,7 @@
 #endif
 
 /* Costs of cutting a loop. A forbidden diagonal outweighs all the rest. */
-#define MCOR_ADAPTIVE_FLAT 64 /* added to lengths of up to 48 */
+#define MCOR_ADAPTIVE_FLAT 64 /* of a diagonal in a face; squared lengths are up to 48 */
 #define MCOR_ADAPTIVE_FORBIDDEN 8192
 
 /* For each slot, the next slot of its loop; 0xff: no vertex. */
@@ -143,7 +143,7 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link(
   }
 }
 
-/* Finds the position of a vertex: the middle of its half-edge or edge. */
+/* Finds a vertex's place, in quarters of the cell's edge: the middle of its half or whole edge. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_place(
   MCOR_TYPE(uint) split, int slot, MCOR_TYPE(uchar) place[3])
 {

@@ -10,7 +10,8 @@
 /* The first cubes are the smallest that cover the lattice with at most this number of cubes. */
 #define MCOR_FIRST_CUBES 32768
 
-/* Finds the states of the cubes in block_keys, and which cubes are inactive. Evaluates the `parts`
+/* Finds the states of the cubes in block_keys, and which cubes are inactive (the surface is neither
+ * in them nor beside them). Evaluates the `parts`
  * cubes that were made by dividing; `index` has their places, or is empty if the places are 0, 1,
  * 2, .... All other cubes are blocks that were kept from an earlier iso value or call, and whose
  * larger cubes are inactive now. These blocks become void: they count as if they did not exist. */

@@ -83,9 +83,9 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
 }
 
 /* Allows diagonals between two opposite edges of each ambiguous face. A face has two pairs of
- * opposite edges: the cell below the face may use one pair, the cell above it the other. Which pair
- * depends on the side of the iso value on which the face's lowest corner lies. So the three faces
- * around a corner are alike; otherwise few tunnels could be made. */
+ * opposite edges; each of the two cells at the face may use one pair. Which pair depends on whether
+ * the face's lowest corner is above the iso value. So the three faces around a corner are alike;
+ * otherwise few tunnels could be made. */
 static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
 {
   for (int i = 0; i < loop->length; ++i)
@@ -133,8 +133,8 @@ static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
 
 /* ---- Tunnels ---- */
 
-/* Gives corners the same number in `region` if they are on the same side of the iso value, and
- * edges of the cell or joined faces connect them. */
+/* Gives corners the same number in `region` if they are on the same side of the iso value, and are
+ * connected by edges of the cell or across ambiguous faces, see `joined`. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])
 {
   int pairs[24][2], count = 0;

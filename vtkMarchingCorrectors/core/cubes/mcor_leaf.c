@@ -3,8 +3,8 @@
 
 /* Adaptive cubes: the leaves that are marched, and the slots of the nodes that they need. The seeds
  * (mcor_seed.c) find the states of all leaves. Leaves that may have surface are listed; only their
- * cells are examined. Nodes whose side is certain have no value at first, and are evaluated if a
- * crossed cell has them. */
+ * cells are examined. Nodes that are certainly on one side of the iso value have no value at first,
+ * and are evaluated if a crossed cell has them. */
 
 #include "mcor_adaptive.h"
 #include "mcor_tree.h"

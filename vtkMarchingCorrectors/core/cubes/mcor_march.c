@@ -12,7 +12,6 @@
 
 /* ---- Cells ---- */
 
-/* Reads element `at` of an array of ints. */
 static mcor_status mcor_read_int(
   mcor_context* context, const mcor_buffer* buffer, int at, cl_int* element)
 {
@@ -36,7 +35,7 @@ static mcor_status mcor_find_used(mcor_context* context)
   MCOR_TRY(mcor_clip_near(context, &mesh->used));
   MCOR_TRY(mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
-  if (adaptive->count > 0) /* finds cells that touch finer leaves, and their edges */
+  if (adaptive->count > 0) /* finds used cells that touch finer leaves, marks their edges */
   {
     const mcor_buffer* owned;
     cl_int flat = 0;

@@ -58,10 +58,10 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Tests regions. Requests the bricks that stay uncertain, whose cells are the seeds, and lists
- * their regions. Places the requested bricks, and all bricks that are known from earlier iso
- * values. Finds states of the uncertain bricks, and evaluates most of these bricks; in a plane,
- * skips this last step, because bounds cost more than a brick's few nodes. */
+/* Tests regions of 2^3 bricks. Requests the bricks that stay uncertain, whose cells are the seeds,
+ * and lists their regions. Gives slots to these bricks, and to all bricks that are known from
+ * earlier iso values. Finds states of the uncertain bricks, and evaluates most of these bricks. In
+ * a plane, skips this last step, because bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -127,8 +127,8 @@ static mcor_status mcor_complete_bricks(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Places the bricks, evaluates their nodes, and finds which cells may be used, and which are plain
- * (no finer brick touches them). */
+/* Gives slots to the needed bricks, evaluates their nodes, and finds which cells may be used, and
+ * which are plain (no finer brick touches them). */
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -15,9 +15,9 @@
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
-/* mcor_tree_brick.c. Adds bricks to a set. key: of the first brick of a cluster of 4^3 bricks; bricks: the mask of the
- * cluster's bricks to add. Returns false if memory ran out. Also returns false, before the sets
- * take much memory, if the leaves would become too many. */
+/* mcor_tree_brick.c. Adds bricks of a cluster of 4^3 bricks to a set. key: of the cluster's first
+ * brick; bricks: the mask of the bricks to add. Returns false if memory ran out or, before the set
+ * takes much memory, if the leaves would become too many. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 /* Whether the sets of all levels together would make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
@@ -91,9 +91,9 @@ mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mc
 /* mcor_tree_brick.c. Lists the keys of all split bricks, ascending. Free them with free(). */
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
-/* Finds the position of the brick with a key. */
 void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
-/* Splits the bricks with these keys. Fails if a key is not of a brick of this tree's lattice. */
+/* Splits the bricks with these keys. Fails if a key belongs to no brick of this tree's lattice, or
+ * to one of level 0, which cannot be split. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
 
@@ -101,7 +101,7 @@ mcor_status mcor_take_splits(
  * or the cell of the brick. */
 #define MCOR_TREE_KEY_BITS 55
 
-/* Finds which bricks the particles of all ranks split; with one level, none. */
+/* Lists in `globals` the bricks that the particles of all ranks split; with one level, none. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
 /* Makes the leaves in the box, and the blocks of all bricks whose nodes the leaves may need. */

@@ -20,7 +20,7 @@ int mcor_tree_level_of(double h, double h_min, int top)
 /* Most bricks of level 0. All levels together have a seventh more. */
 #define MCOR_BRICK_LIMIT 0x1p63
 
-/* The lattice is a whole number of bricks of the highest level. */
+/* The lattice is a whole number of bricks of level top + 1. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
   mcor_lattice* lattice = &context->lattice;

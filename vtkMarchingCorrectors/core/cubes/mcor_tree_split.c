@@ -68,8 +68,8 @@ static uint64_t mcor_reached_bricks(
   return reached;
 }
 
-/* Adds to the set the bricks that a particle reaches. *all: whether all bricks that the particle may
- * reach were in the set already. */
+/* Adds to the set the bricks that a particle reaches. *all: whether the set already had all bricks
+ * that the particle may reach. Returns false if the set could not take the bricks. */
 static bool mcor_split_reached(
   const mcor_tree_job* job, const mcor_splitter* p, mcor_brick_set* set, bool* all)
 {
@@ -177,7 +177,6 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Splits bricks by all particles. */
 static mcor_status mcor_split_by_particles(
   mcor_context* context, const mcor_input* input, mcor_tree* tree)
 {
@@ -238,7 +237,7 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
       mcor_brick_of_key(&tree->lattice->rungs[level], cluster.key, first);
       for (int bit = 0; bit < 64 << context->space.axes; ++bit)
       {
-        const int b = bit & 63, d = bit >> 6; /* d: bits x, y, z: beyond a side */
+        const int b = bit & 63, d = bit >> 6; /* bit a of d: one brick farther along axis a */
         int above[3];
         if (!(cluster.value >> b & 1))
         {

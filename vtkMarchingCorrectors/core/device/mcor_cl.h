@@ -10,8 +10,8 @@
 
 #include <stdbool.h>
 
-#define MCOR_KEPT_BUFFERS 32 /* at most */
-#define MCOR_LOCKED_LIMIT 32 /* at most */
+#define MCOR_KEPT_BUFFERS 32 /* most buffers kept for reuse */
+#define MCOR_LOCKED_LIMIT 32 /* most mcor_locked */
 /* Most segments into which scans and sorts cut their arrays. */
 #define MCOR_SEGMENT_LIMIT 4096
 
@@ -29,8 +29,8 @@ typedef struct mcor_locked
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
   void* host;
   size_t size, written; /* written: bytes to copy to the buffer until it is unmapped */
-  size_t sent; /* how many bytes the driver copies to the buffer or from it, or has copied since the
-                * last mcor_finish */
+  /* Bytes that the driver copies to or from the buffer, or has copied since the last mcor_finish */
+  size_t sent;
 } mcor_locked;
 
 /* One variant of the programs: everything that their compilation depends on. */
@@ -76,10 +76,9 @@ typedef struct mcor_kernel
   char name[48];
   cl_kernel kernel;
   mcor_program program;
-  bool launched[2]
-               [2]; /* [first item is 0, or not][few work-items, or many]: drivers compile a kernel
-                     * for each case */
-  double part;      /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
+  /* [first item is 0, or not][few work-items, or many]: drivers compile a kernel for each case. */
+  bool launched[2][2];
+  double part; /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
 } mcor_kernel;
 
 /* Called between launches, and before a driver compiles, which may take seconds. A status other
@@ -103,8 +102,7 @@ typedef struct mcor_cl
   int64_t kernel_room;
   int device_number, units;       /* number in the list of devices; compute units */
   cl_uint width;                  /* of the device's vectors of float */
-  int place, count;               /* number of this process, and how many processes share the
-                                   * devices */
+  int place, count; /* number of this process; how many processes share the devices */
   bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
   bool builds_sets;               /* each set of programs is one program */
@@ -119,13 +117,12 @@ typedef struct mcor_cl
   mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* see mcor_release */
   int kept_count;
   mcor_locked locked[MCOR_LOCKED_LIMIT];
-  int64_t kept_bytes, used_peak,
-    used_before; /* the most bytes used, without kept buffers: in this call, in the last call */
+  /* Bytes of kept buffers; the most bytes in other buffers: in this call, in the last call. */
+  int64_t kept_bytes, used_peak, used_before;
   double build_seconds;   /* how long the present call has built programs */
   mcor_observer observer; /* progress of the present call; NULL: none */
-  double terms;           /* about the number of terms in the sum at a point, for mcor_enqueue_cut */
-  bool compiles; /* the driver compiles kernels when they are first launched: the last such launch
-                  * took long */
+  double terms; /* about the number of terms in the sum at a point, for mcor_enqueue_cut */
+  bool compiles; /* drivers compile a kernel at its first launch: the last such launch took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -227,7 +224,7 @@ typedef struct mcor_mapping
 } mcor_mapping;
 /* Maps the buffers for reading, in order, up to the first failure. */
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
-/* The same, but the host may read the buffers only after the next mcor_finish. */
+/* Maps as mcor_map_all does, but the host may read only after the next mcor_finish. */
 mcor_status mcor_begin_mapping(mcor_context* context, const mcor_mapping* mappings, int count);
 /* Unmaps all of the buffers that are mapped. Returns `status` or, if that is MCOR_OK, the first
  * failure. */
@@ -237,7 +234,7 @@ mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, 
 /* Fills a buffer with copies of a real number. Only for devices with memory of their own. */
 mcor_status mcor_fill_reals(
   mcor_context* context, mcor_buffer* buffer, double value, size_t count);
-/* Fills only the bytes [first, last). */
+/* Makes room for `last` bytes, and fills the bytes [first, last). */
 mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
 /* Moves the memory of buffer `from` to `to`; `from` is then empty. */
@@ -252,8 +249,8 @@ mcor_status mcor_copy(
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
-/* Appends what the call has cost to the profile, if there is one. Returns the status of the call; or,
- * if the call succeeded but its rows cannot be written, a failure. */
+/* Appends what the call has cost to the profile, if there is one. Returns `status`, the call's; or
+ * a failure, if the call succeeded but its rows cannot be written. */
 mcor_status mcor_write_profile(
   mcor_context* context, const mcor_statistics* statistics, mcor_status status);
 void mcor_close_profile(mcor_context* context);

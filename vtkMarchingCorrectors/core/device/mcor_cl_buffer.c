@@ -223,7 +223,7 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
   return MCOR_OK;
 }
 
-/* waits: the host may read the buffer when the function returns, else after mcor_finish. */
+/* waits: the host may read the buffer when this function returns; else only after mcor_finish. */
 static mcor_status mcor_map_view(mcor_context* context, const mcor_buffer* buffer, size_t bytes,
   bool write, bool waits, void** data)
 {

@@ -103,8 +103,7 @@ static inline bool mcor_is_native(const mcor_cl* cl)
   return cl->platform == mcor_native_platform();
 }
 
-/* mcor_cl_program.c */
-/* Builds a program unless it is built. */
+/* mcor_cl_program.c. Builds a program unless it is built. */
 mcor_status mcor_need_program(mcor_context* context, mcor_program number);
 /* Drops a set of programs, and their kernels. */
 void mcor_drop_programs(mcor_cl* cl, int programs);

@@ -345,8 +345,8 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
   int chosen = -1;
-  for (int drivers = 0; drivers < 2 && chosen < 0; ++drivers) /* looks for drivers last, because
-                                                               * they take a while to start */
+  /* Looks for drivers last, because they take a while to start. */
+  for (int drivers = 0; drivers < 2 && chosen < 0; ++drivers)
   {
     mcor_find_devices(&list, drivers);
     chosen = cl->is_default ? mcor_choose_device(&list, &mcor_usual_build)

@@ -76,8 +76,8 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
  * precision (MCOR_DOUBLE_TERMS) there are fewer lanes, and more to do. Usual launches fit into one
  * part. Parts do not become larger, because the next work-items may have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
-#define MCOR_FIRST_SHARE                                                                           \
-  32 /* while a kernel's time is unknown, its first part is the limit divided by this number */
+/* While a kernel's time is unknown, its first part on a CPU is the limit divided by this number. */
+#define MCOR_FIRST_SHARE 32
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
 /* Launches `count` work-items from `offset` on. Drivers may compile a kernel once more for many

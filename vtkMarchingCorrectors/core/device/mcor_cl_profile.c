@@ -67,7 +67,7 @@ mcor_status mcor_open_profile(mcor_context* context)
     !profile->file, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(PROFILE_FILE), path, strerror(errno));
   char begin[sizeof mcor_profile_head] = "";
   rewind(profile->file);
-  const bool is_new = !fgets(begin, sizeof begin, profile->file) || !*begin; /* a new file, or a device */
+  const bool is_new = !fgets(begin, sizeof begin, profile->file) || !*begin; /* empty or device */
   MCOR_FAIL_IF(!is_new && strcmp(begin, mcor_profile_head) != 0, context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(PROFILE_FILE), path, "it holds something else");
   fseek(profile->file, 0, SEEK_END);

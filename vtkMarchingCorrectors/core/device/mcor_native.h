@@ -26,7 +26,7 @@ typedef enum mcor_instructions
 typedef void mcor_native_run(unsigned number, void* const* arguments, size_t first, size_t last);
 typedef struct mcor_native_program
 {
-  /* The options as mcor_program_options writes them, from "-DMCOR_PROGRAM" on. NULL ends the list. */
+  /* What mcor_program_options writes, from "-DMCOR_PROGRAM" on. NULL ends the list of programs. */
   const char* options;
   mcor_instructions instructions;
   mcor_native_run* run;

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define MCOR_LOOP_THREADS 16 /* the most threads for loops of the host without the built-in device */
+#define MCOR_LOOP_THREADS 16 /* most threads for loops of the host without the built-in device */
 
 int mcor_limit_threads(int usable)
 {
@@ -107,8 +107,7 @@ mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, 
   {
     free(pool->all);
     pool->all = malloc((size_t)pool->threads * sizeof *pool->all);
-    pool->threads = pool->all ? pool->threads : 1; /* only the calling thread is left if memory ran
-                                                    * out */
+    pool->threads = pool->all ? pool->threads : 1; /* without memory, one thread */
     pool->process = (long)getpid();
     pool->count = pool->active = 0;
     pool->round = 0;
@@ -177,7 +176,7 @@ static void mcor_run_slices(void* data, size_t first, size_t last)
   }
 }
 
-/* Runs the body for all slices. asks: the context's progress callback is asked, and may cancel. */
+/* Runs the body for all slices. asks: whether the progress callback is asked and may cancel. */
 static mcor_status mcor_run_loop(mcor_context* context, bool asks, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices)
 {

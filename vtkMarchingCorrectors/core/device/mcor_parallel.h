@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MCOR_SLICES 32 /* at most */
+#define MCOR_SLICES 32 /* most slices of a loop */
 
 /* The least number of elements for which starting a thread (about 30 us) is worth it: of elements
  * that take 10 ns, that take 1 ns, or that are only read from memory. */
@@ -57,7 +57,7 @@ typedef struct mcor_pool
   int threads;    /* the most threads, the calling one included; 0: not decided */
   int count;      /* how many exist */
   pthread_t* all; /* [threads - 1] */
-  long process; /* the process that created them (a process made by fork has none of them); 0: none */
+  long process; /* the process with these threads (one made by fork has none of them); 0: none */
   pthread_mutex_t lock; /* protects open, ends, round and active */
   pthread_cond_t wake, done;
   bool open, ends; /* open: there is a loop to join; ends: the threads must end */

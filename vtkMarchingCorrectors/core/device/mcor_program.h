@@ -24,8 +24,8 @@ typedef struct mcor_kernel_source
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
-/* Returns the parts that a program consists of: only itself; or all parts of its set; or none, if
- * another program holds its set. */
+/* Returns, as bits, which programs are compiled as this one: only itself; if cl->builds_sets, all
+ * of its set, or none if another program holds the set. */
 int mcor_parts_of(const mcor_cl* cl, mcor_program program);
 /* Returns the program that has a kernel; the beginning of the kernel's name tells which. */
 mcor_program mcor_program_of(const mcor_cl* cl, const char* kernel);

@@ -60,7 +60,7 @@ void mcor_use_large_pages(void* memory, size_t bytes)
 mcor_function mcor_system_opencl(void)
 {
   mcor_function found = NULL;
-#ifndef __APPLE__ /* its platform is of another kind: objects do not begin with tables */
+#ifndef __APPLE__ /* objects of Apple's OpenCL do not begin with tables of functions */
   /* The program may have a loader already, or a tool in place of one. */
   *(void**)&found = dlsym(RTLD_DEFAULT, "clGetPlatformIDs");
   void* loader = found ? NULL : dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);

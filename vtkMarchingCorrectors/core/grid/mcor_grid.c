@@ -206,8 +206,8 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
  * within 0.7 %, for all kernels and smoothing lengths. */
 #define MCOR_ONE_SIDED (5.0 / 3)
 
-/* Computes each particle's volume V_j = m_j / (sum_k m_k W(x_j - x_k, h_j) (1 + 5/3 D^2)). h_j is not
- * scaled by h_scale; for D see mcor_grid.cl; m is 1 where no mass is known. */
+/* Computes each particle's volume V_j = m_j / (sum_k m_k W(x_j - x_k, h_j) (1 + 5/3 D^2)). h_j is
+ * not scaled by h_scale; for D see mcor_density_factor; m is 1 where no mass is known. */
 static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;
@@ -327,8 +327,8 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
   (void)slice;
 }
 
-/* Copies one component of an array (or the scalar, if `array` is NULL), less `shift`, times
- * `scale`, as real or fixed-point numbers, into row `to_row`; a row has one value per particle. */
+/* Writes (A - shift) * scale of each particle, in the grid's order, as real or fixed-point numbers,
+ * to row `to_row` of `to`. A is one component of `array`, or the scalar if `array` is NULL. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, bool fixed, mcor_buffer* to,
   int to_row)

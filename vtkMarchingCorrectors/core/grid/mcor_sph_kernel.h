@@ -6,8 +6,8 @@
 /* The SPH smoothing kernels, for the C core and, as OpenCL C, for devices: each has a row of the
  * table and three functions. CONTRIBUTING.md says where else a kernel has to be named.
  *
- * A kernel is W = norm / h^3 * w(q), q = r / h, with w written so that one branch-free expression
- * holds for all q >= 0, 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h)
+ * A kernel is W = norm / h^3 * w(q), q = r / h. w is one branch-free expression for all q >= 0, and
+ * 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h)
  * w(|z|/h). All others must be positive and fall with q, because bounds rely on this, and their
  * rounding error is at most 96 units of rounding of w (mcor_bound.cl). All kernels use only
  * operations that every device rounds alike: no sine, no power, no exponential. */
@@ -15,9 +15,10 @@
 /* A row has what the core knows of a kernel. Rows are in the order of mcor_sph_kernel:
  *
  *   enumerator, name, support / h, norm, whether it is a tensor product,
- *   variance, variance in the plane: along an axis, in h^2, the integral of x^2 W
- *   c: in two dimensions, W = c h norm / h^3 * w(q) has the integral 1 (tensor: two factors)
- *   numbers of neighbours that are usual, in space and in the plane: words for a warning */
+ *   variance in space, variance in the plane: the integral of x^2 W, in h^2
+ *   c: W = c h norm / h^3 * w(q) has the integral 1 over the plane; a tensor kernel there has
+ *     w(|x|/h) w(|y|/h) in place of w(q)
+ *   the usual numbers of neighbours in space and in the plane: texts that a warning quotes */
 // clang-format off
 #define MCOR_SPH_KERNEL_TABLE(ENTRY) \
   ENTRY(MCOR_CUBIC_SPLINE, cubic, 2.0, 0.31830988618379067154, 0, /* 1 / pi */ \

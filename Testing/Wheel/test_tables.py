@@ -370,7 +370,7 @@ CASES = {
     "another box": ("a.dump", BOX + "abc pp pp pp\n" + VECTORS + ROWS, "line 5 begins a box of a kind that is not known"),
     "a short box": ("a.dump", BOX + "xy xz yz pp pp pp\n0 26 4\n0 23\n0 20 3\n" + ROWS, "line 7 has 2 numbers, where a side of its box has 3"),
     "no box": ("a.dump", BOX.rpartition("ITEM")[0] + ROWS, "shares of a box (xs, ys, zs), and it has no box"),
-    "an unknown item": ("a.dump", BOX + "pp pp pp\n0 1\n0 1\n0 1\nITEM: FRAME\n1\n" + ROWS, "is none of a dump"),
+    "an unknown item": ("a.dump", BOX + "pp pp pp\n0 1\n0 1\n0 1\nITEM: FRAME\n1\n" + ROWS, "is no item of a dump of LAMMPS that is known here"),
     "units": ("a.dump", "ITEM: UNITS\nlj\n" + BOX + "pp pp pp\n0 1\n0 1\n0 1\n" + ROWS, None),
     "a lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 0 3 0 0 0 4", "T F T") + "\n" + TWO, None),
     "a tilted lattice": ("a.xyz", "2\n" + XYZ.format("2 0 0 1 3 0 0 0 4", "T T T") + "\n" + TWO, None),

@@ -297,7 +297,7 @@ bool FindDumpStep(Lines& lines, Step& step)
     }
     else
     {
-      lines.Check(line.empty(), " is none of a dump of LAMMPS");
+      lines.Check(line.empty(), " is no item of a dump of LAMMPS that is known here");
     }
   }
   RequireToRead(!hasBegun, lines.File, "it ends before the particles of a step");

@@ -119,7 +119,7 @@ def read_lammps(path, step):
         if not words:
             continue
         if words[0] != "ITEM:" or len(words) < 2:
-            raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS.")
+            raise FileError(f"{path.name}: line {at} is no item of a dump of LAMMPS that is known here.")
         if words[1] in ("TIMESTEP", "TIME"):
             time = to_number(lines[at]) if at < len(lines) else None
             if time is None:
@@ -135,7 +135,7 @@ def read_lammps(path, step):
             steps.append((head.get("TIME", head.get("TIMESTEP")), (at, words[2:], head)))
             at, head = at + head.get("count", 0) - 1, {}
         elif words[1:] != ["UNITS"]:
-            raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS that is known here.")
+            raise FileError(f"{path.name}: line {at} is no item of a dump of LAMMPS that is known here.")
         at += 1
     if not steps:
         raise FileError(f"{path.name} has no particles.")

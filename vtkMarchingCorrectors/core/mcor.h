@@ -61,9 +61,9 @@ extern "C"
     MCOR_SAYS_COUNT
   } mcor_says;
 
-  /* A sentence: a failure or a warning. In the text, the slot {cube_size} stands for the name of a
-   * member of mcor_options or mcor_input, and the slot {precision double} for an option and its
-   * value: see mcor_fill_slots. The caller frees a message with mcor_free_message. */
+  /* A sentence: a failure or a warning. In the text, a slot such as {cube_size} stands for the name
+   * of a member of mcor_options or mcor_input, and one such as {precision double} for an option and
+   * its value: see mcor_fill_slots. The caller frees a message with mcor_free_message. */
   typedef struct mcor_message
   {
     mcor_says code; /* MCOR_SAYS_NOTHING: there is no message */
@@ -123,8 +123,8 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    /* The paper's seeds: the cells between two particles that are at most an (unscaled) smoothing
-     * length apart, and whose values lie on different sides of the iso value. For comparisons.
+    /* The paper's seeds, for comparisons: the cells between two particles that are at most an
+     * (unscaled) smoothing length apart, and whose values lie on different sides of the iso value.
      * Needs cubes of one size, and no box, caps or ranks. With MCOR_WEIGHT_SUM particles have no
      * values, so seeds are complete. */
     MCOR_PAIRS = 1
@@ -172,7 +172,7 @@ extern "C"
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
-    /* [count][components], finite (attributes need not be); borrowed until return; NULL: constant */
+    /* [count][components], finite unless an attribute; borrowed until return; NULL: constant */
     const void* data;
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */
@@ -268,7 +268,7 @@ extern "C"
  * the wall share is 0.5, and the surface stays in front of that layer. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
-  /* A surface in parts, made by several processes or from some of the particles: see mcor_parts.h. */
+  /* For surfaces in parts, by several processes or from some of the particles: see mcor_parts.h. */
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
@@ -358,8 +358,8 @@ extern "C"
     /* x0, x1, y0, y1, z0, z1; unit L. Unless all are 0, the result is the part of the surface in
      * cells whose centres are in the box, box[2 a] <= x < box[2 a + 1] along axis a. It has the
      * same bits as the whole surface, and boxes side by side make up the whole surface. Sides may
-     * be infinite. A box may be flat (y0 = y1) only around particles in that plane. Lattice, ranges
-     * and smallest h are measured over all particles; only particles that reach the box are
+     * be infinite. A box may be flat (y0 = y1) only around particles in the plane y = y0. Lattice,
+     * ranges and smallest h are measured over all particles; only particles that reach the box are
      * evaluated. mcor_probe and mcor_derive read the box only with globals. */
     double box[6];
 
@@ -387,7 +387,7 @@ extern "C"
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
      * particles. The input then needs only the particles whose supports miss the box by no more
      * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
-     * supports of those particles. The surface has the same bits as with all particles. Borrowed
+     * supports of these particles. The surface has the same bits as with all particles. Borrowed
      * until return. mcor_probe and mcor_derive take the result of mcor_measure_probe_globals in its
      * place. What they compute is valid in the box and on its sides; elsewhere it is meaningless,
      * or 0 for particles two cubes or more away from the box. */
@@ -434,22 +434,23 @@ extern "C"
     double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
     /* far_particles: how many particles are left out because they are too far away from all others
-     * for the virtual grid (at most 0.1 % of all, or 8); far_first, far_place: number and position
-     * of the first of them. */
+     * for the virtual grid (at most 0.1 % of all, or 8 if that is more); far_first, far_place:
+     * number and position of the first far particle. */
     int64_t far_particles, far_first;
     double far_place[3];
     /* Fluid particles whose volume x W(0), the weight sum at a particle by itself, is below the
      * lowest iso value: alone, such a particle has no free surface. 0 if volumes are computed, or
      * if a scalar is contoured. */
     int64_t lone_particles;
-    int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
+    /* On the device, periodic images included; with a box, only particles that the box needs. */
+    int64_t particles_in_reach;
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
     /* Medians over a sample of the fluid particles: smoothing length; number of particles within
      * the unscaled support radius, including the particle itself and solids; distance of the
      * nearest other particle (0: none); share of the support that the particles in it fill if all
      * are as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
-    double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
+    double widening_min, widening_mean, widening_max; /* factors of fluid particles, or 0 */
     /* Fluid particles that are inside by mcor_widen's weight sum with their own smoothing lengths,
      * but outside by the sum with their factors. In a box, mcor_widen also counts particles next to
      * the box. */
@@ -457,7 +458,7 @@ extern "C"
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
     double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; or 0 */
-    double plane_extent;    /* of the positions of all particles along it */
+    double plane_extent;    /* of the positions of all particles, along plane_normal */
     int dimension;          /* 2 or 3, see mcor_options.dimension */
     double cube_size;       /* unit L; the shortest of cube_edges */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
@@ -493,9 +494,9 @@ extern "C"
      * cuts off a part of the surface that the finer cells resolve. */
     int64_t flat_loops;
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
-    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of them join the nodes above the iso
-     * value, which the table keeps apart; cells with two loops that may form a tunnel, and how many
-     * of them do. */
+    /* With MCOR_TOPOLOGY_FIELD: ambiguous faces; how many of them join the two nodes above the iso
+     * value, which MCOR_TOPOLOGY_TABLE keeps apart; cells in which a tunnel may join two polygons
+     * of the surface; cells in which a tunnel does. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Distance between the linear and the corrected vertex, unit L, as in the paper's Table V. */
     double correction_mean, correction_max, correction_deviation;
@@ -507,9 +508,7 @@ extern "C"
      * device's rounding of positions and sums may add. Leaves out caps and trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
-    int64_t trim_vertices,
-      /* trim vertices that are left at the linear cut, off the iso value */
-      trim_vertices_linear;
+    int64_t trim_vertices, trim_vertices_linear; /* linear: at the linear cut, off the iso value */
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
@@ -542,7 +541,7 @@ extern "C"
      * normals of the triangles, along the constant axis. Where statistics count triangles, they
      * count lines between two points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
-    int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
+    int64_t* line_offsets; /* [offset_count] = line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
     /* [triangle_count]; NULL unless filled: the iso value at which the triangle's band begins; the
      * last band has no upper end. At nodes inside the region, iso_value is the value at which the
@@ -615,7 +614,7 @@ extern "C"
     MCOR_VELOCITY,
     MCOR_PARTICLE_ID,   /* a whole number that identifies the particle at all times */
     MCOR_PARTICLE_TYPE, /* tells fluid from solids */
-    MCOR_SPACING,       /* distance of particles; says nothing by itself */
+    MCOR_SPACING,       /* distance of particles; only suggests a smoothing length */
     MCOR_POSITION,      /* columns of a table, three to a position */
     MCOR_QUANTITY_COUNT
   } mcor_quantity;

@@ -11,10 +11,10 @@
 #define MCOR_FIRST_CUBES 32768
 
 /* Finds the states of the cubes in block_keys, and which cubes are inactive (the surface is neither
- * in them nor beside them). Evaluates the `parts`
- * cubes that were made by dividing; `index` has their places, or is empty if the places are 0, 1,
- * 2, .... All other cubes are blocks that were kept from an earlier iso value or call, and whose
- * larger cubes are inactive now. These blocks become void: they count as if they did not exist. */
+ * in them nor beside them). Evaluates the `parts` cubes that were made by dividing; `index` has
+ * their places, or is empty if the places are 0, 1, 2, .... All other cubes are blocks that were
+ * kept from an earlier iso value or call, and whose larger cubes are inactive now. These blocks
+ * become void: they count as if they did not exist. */
 static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {

@@ -237,7 +237,7 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree)
       mcor_brick_of_key(&tree->lattice->rungs[level], cluster.key, first);
       for (int bit = 0; bit < 64 << context->space.axes; ++bit)
       {
-        const int b = bit & 63, d = bit >> 6; /* bit a of d: one brick farther along axis a */
+        const int b = bit & 63, d = bit >> 6; /* bit a of d: the parent's neighbour on axis a */
         int above[3];
         if (!(cluster.value >> b & 1))
         {

@@ -7,10 +7,10 @@
  * table and three functions. CONTRIBUTING.md says where else a kernel has to be named.
  *
  * A kernel is W = norm / h^3 * w(q), q = r / h. w is one branch-free expression for all q >= 0, and
- * 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h)
- * w(|z|/h). All others must be positive and fall with q, because bounds rely on this, and their
- * rounding error is at most 96 units of rounding of w (mcor_bound.cl). All kernels use only
- * operations that every device rounds alike: no sine, no power, no exponential. */
+ * 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h). All others
+ * must be positive and fall with q, because bounds rely on this, and their rounding error is at
+ * most 96 units of rounding of w (mcor_bound.cl). All kernels use only operations that every device
+ * rounds alike: no sine, no power, no exponential. */
 
 /* A row has what the core knows of a kernel. Rows are in the order of mcor_sph_kernel:
  *

@@ -226,8 +226,9 @@ def run_surface(given, particles):
 def run_gauge(given, particles):
     """Measures the gauges at all steps of a file, or in one set of particles, and writes a row for each step and gauge."""
     rows, is_film, names = [], len(given.input) == 1, [name for name, _ in given.gauge]
-    if len({*names}) < len(names):
-        raise InvalidArgument("Two gauges have the same name; give each a name of its own.")
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidArgument(f"Two gauges are called '{name}': their names must differ.")
     for step, each in enumerate(io.read_steps(given.input[0], walls=given.walls) if is_film else [particles]):
         found = gauge(each, dict(given.gauge), (given.iso or [0.5])[0], **find_words(given, GAUGE, each, "gauge"))
         time = float(step if each.time is None else each.time)
@@ -286,7 +287,7 @@ def run_slice(given, particles):
 
 def run_line(given, particles):
     if len(given.line) != 6 or given.line[:3] == given.line[3:]:
-        raise InvalidArgument("--line takes two different points, X,Y,Z,X,Y,Z.")
+        raise InvalidArgument(f"--line takes the six numbers of two different points, not {given.line}.")
     begin, end = np.array(given.line[:3]), np.array(given.line[3:])
     points = begin + np.linspace(0, 1, max(given.resolution or 512, 2))[:, None] * (end - begin)
     return run_probe(given, particles, points, lambda pyvista: pyvista.lines_from_points(points), "line")

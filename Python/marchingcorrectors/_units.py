@@ -68,7 +68,7 @@ class Units:
                 "mass": without_unit(mass), "density": without_unit(density)}
 
     def options(self, words):
-        """Returns the options, with the lengths cube_size, box and periodic as plain numbers in the unit of the positions."""
+        """Returns the options, with the lengths cube_size, box and periodic as plain numbers in the positions' unit."""
         return {name: self.lengths(value, name) if name in ("box", "periodic") or name == "cube_size" and value
                 else value for name, value in words.items()}
 

@@ -336,7 +336,7 @@ class Options(CommandLineTest):
         self.refuse(self.run_program("--list-arrays", "none.vtp"), 1, "none.vtp")
 
     def test_first_compilation(self):
-        """If a driver has no programs in its cache, the program says that compiling takes time."""
+        """If a driver has no programs in its cache, a message tells that compiling takes time."""
         if "Portable" not in self.run_program("--list-devices").stdout:
             self.skipTest("there is no PoCL")
         environment = {**os.environ, "POCL_CACHE_DIR": str(self.directory / "cache")}

@@ -423,7 +423,7 @@ class Program(unittest.TestCase):
                 self.assertEqual(self.text(name), "old", name)
 
     def test_own_disks(self):
-        """Each process but the first checks only the files that it writes, because processes may have disks of their own."""
+        """Each process but the first looks only at the files that it writes, because processes may have disks of their own."""
         enter = f"mkdir {self.folder.name}/$rank; cd {self.folder.name}/$rank; test $rank = 0 || mkdir out_0.vtp;"
         self.good(self.run_ranks(os.path.abspath(PARTICLES), "out.pvtp", "--free-surface", first=enter))
         self.assertTrue(os.path.isfile(self.path("1/out_1.vtp")))

@@ -144,7 +144,7 @@ class TestColours(unittest.TestCase):
 
 class TestForgotten(unittest.TestCase):
     def test_pieces(self):
-        """If the particles' input is missing, no message says so. If the surface is missing, one message does."""
+        """If the surface is missing, one message tells of it; if the particles' input is missing, none does."""
         surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
         pieces = vtkSPHComponents()
         _, told = run(pieces, surface)

@@ -256,7 +256,7 @@ class TestArrays(FilterTest):
         self.assertIsNone(surface.GetPointData().GetNormals())
 
     def test_coarse_points(self):
-        """A warning says that float coordinates are too coarse for the surface: their steps are 0.0625, the cubes 0.065."""
+        """A warning tells that float coordinates are too coarse for the surface: their steps are 0.0625, the cubes 0.065."""
         extract, far = sphere(), particles_of(points_of(cube()) - [0, 1e6, 0]).GetPoints()
         self.good(extract, OutputPointsPrecision=0)
         extract.GetInput().SetPoints(far)

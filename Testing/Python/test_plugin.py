@@ -322,7 +322,7 @@ def check_slices(reader):
 
 
 def check_gauge(reader):
-    """A gauge's line runs upright through the particles, and is read over time as the guide says."""
+    """A gauge's line runs upright through the particles, and is read over time as in the guide."""
     gauge = SPHGauge(Particles=reader, Point1=[0.0, 0.0, 0.0], Point2=[0.0, 0.0, 1.0])  # noqa: F821
     assert list(gauge.Point1) == [0.0, 0.0, 0.0] and list(gauge.Point2) == [0.0, 0.0, 1.0]  # These are not the bounds of the particles.
     gauge.Point1 = [0.0, 0.0, -1.0]

@@ -77,8 +77,7 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Gives each appended vertex the node of the vertex that it replaces, and the offset from this
- * node. */
+/* Writes each appended vertex's node, which is the replaced vertex's, and the offset from it. */
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

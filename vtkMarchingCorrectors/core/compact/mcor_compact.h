@@ -109,8 +109,7 @@ static inline void mcor_set_state(const mcor_bunches* bunches, int32_t v, int st
     &bunches->of[bunches->of[v].first].state, (unsigned char)state, memory_order_relaxed);
 }
 
-/* Returns vertex v; if v is merged, the first vertex of its bunch, which stands for the merged
- * vertex. */
+/* Returns v or, if v is merged, its bunch's first vertex, which stands for the merged vertex. */
 static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
 {
   return mcor_is_merged(bunches, v) ? bunches->of[v].first : v;

@@ -21,8 +21,7 @@
 /* Most edges of a mcor_fan, one for each triangle around a bunch. A bunch with more stays apart. */
 #define MCOR_FAN_LIMIT 48
 
-/* Least number of vertices that a closed piece keeps: 6 of a surface, with 8 triangles; 4 of a
- * closed line. */
+/* Least number of vertices that a closed piece keeps: a surface 6, with 8 triangles; a line 4. */
 #define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 6 : 4)
 
 /* ---- Nodes ---- */
@@ -99,8 +98,7 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
-/* Returns the first of the vertices to which v is joined so far. Each vertex leads to a lower
- * one. */
+/* Returns the first of the vertices that v is joined to so far. `first` leads to lower vertices. */
 static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
 {
   for (int32_t first; (first = of[v].first) != v; v = first)
@@ -309,8 +307,7 @@ static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
     (!all || mcor_is_ring(&fan, bunches->corners)) && mcor_is_large(bunches, bunch, &merged);
 }
 
-/* Merges the bunches that can be merged whatever happens to the others; other bunches become
- * unsure. */
+/* Merges the bunches that can be merged whether or not others are; the others become unsure. */
 static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

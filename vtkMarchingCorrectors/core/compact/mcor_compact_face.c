@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours: takes apart merged bunches that turn triangles over, and moves vertices of
- * slivers. */
+/* Compact contours: takes apart bunches that turn triangles over, and moves vertices of slivers. */
 
 #include "mcor_compact.h"
 #include "mcor_vector.h"
@@ -49,9 +48,9 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Marks merged bunches of each triangle as bad: the bunches that did not reach the surface or, if
- * all of them did and the triangle is turned over, all of them. Marks the widest corner of a
- * sliver. */
+/* Marks merged bunches at each triangle as bad: the ones that did not reach the surface. If all
+ * reached it, but the triangle is turned over, marks all merged bunches at the triangle. Marks a
+ * sliver's widest corner, if this vertex may move. */
 static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -147,8 +146,8 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
 #define MCOR_FARTHEST_START 2.5
 
 /* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles
- * around it. Returns whether the vertex may start in this middle. Of two vertices beside each
- * other, only the first moves. */
+ * around it. Returns whether the vertex may start in this middle: the middle must be near the
+ * vertex's node, and no vertex beside it with a lower number may be a sliver's widest corner. */
 static bool mcor_look_around(const mcor_bunches* bunches, mcor_start* start)
 {
   const mcor_bunch_vertex* of = bunches->of;

@@ -34,8 +34,7 @@ static mcor_status mcor_test_cubes(
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Most blocks. If a fourth of so many blocks had surface, the triangles would reach their own
- * limit. */
+/* Most blocks. If a fourth of these had surface, the triangles would reach their own limit. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
 /* Replaces the cubes by the parts of the active cubes. If the parts are blocks (level 1), also adds

@@ -172,8 +172,7 @@ typedef struct mcor_strip
   uint8_t path[3 * 24], best[3 * 24]; /* slots of triangles */
 } mcor_strip;
 
-/* Returns the squared distance between two vertices, in half cubes; much more if both are in one
- * face. */
+/* Returns two vertices' squared distance, in half cubes; much more if both are in one face. */
 static int mcor_side_cost(const mcor_strip* strip, int i, int j)
 {
   int cost = (strip->first.facets[i] & strip->second.facets[j]) >> 24 ? 1000 : 0;

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1], for uniform and adaptive cubes. Slots are sorted by level, and so are
- * vertices. */
+/* Extraction [III-D.1], for uniform and adaptive cubes. Slots and vertices are sorted by level. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -18,8 +17,7 @@ static mcor_status mcor_read_int(
   return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
 }
 
-/* Finds the used cells, through which the surface passes, in the box and in the ring of cells
- * around it. */
+/* Finds the used cells, which the surface crosses, in the box and the ring of cells around it. */
 static mcor_status mcor_find_used(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;

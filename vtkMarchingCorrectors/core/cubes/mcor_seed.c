@@ -24,8 +24,7 @@ double mcor_side_margin(const mcor_context* context)
 }
 
 /* Requests bricks that are certainly on one side of the iso value, but beside a node on the other
- * side. Looks at nodes of bricks with bits in `fresh` only. bricks.found: whether any were
- * requested. */
+ * side. Looks at nodes of bricks with bits in `fresh`. bricks.found: whether any were requested. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;

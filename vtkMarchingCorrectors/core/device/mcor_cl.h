@@ -188,8 +188,7 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds building the missing programs takes; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
-/* Waits for the programs that are being built, ends the threads that build, and keeps the programs
- * that are done. */
+/* Waits for programs under way, ends the threads that build, and keeps the built programs. */
 void mcor_end_building(mcor_cl* cl);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 /* Releases a buffer. A large one is kept for the next request of about its size: the first touch
@@ -214,8 +213,7 @@ mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** 
 /* Begins to copy to the device the first `bytes` of a buffer that is mapped to be written, while
  * the host writes the bytes behind them. Does nothing where host and device share memory. */
 mcor_status mcor_send(mcor_context* context, const void* data, size_t bytes);
-/* A buffer for mcor_map_all, which maps several. *data must be NULL before mcor_map_all is
- * called. */
+/* One of the buffers that mcor_map_all maps. *data must be NULL before the call. */
 typedef struct mcor_mapping
 {
   const mcor_buffer* buffer;
@@ -226,8 +224,7 @@ typedef struct mcor_mapping
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
 /* Maps as mcor_map_all does, but the host may read only after the next mcor_finish. */
 mcor_status mcor_begin_mapping(mcor_context* context, const mcor_mapping* mappings, int count);
-/* Unmaps all of the buffers that are mapped. Returns `status` or, if that is MCOR_OK, the first
- * failure. */
+/* Unmaps the buffers that are mapped. Returns `status` or, if it is MCOR_OK, the first failure. */
 mcor_status mcor_unmap_all(
   mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);

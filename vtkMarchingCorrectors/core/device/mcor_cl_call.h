@@ -3,8 +3,7 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* Only for the files mcor_cl_*.c, which call OpenCL. Also tells what is special about some
- * drivers. */
+/* Only for the files mcor_cl_*.c, which call OpenCL. Also tells what is special about drivers. */
 
 #include "mcor_internal.h"
 #include "mcor_native.h"
@@ -64,8 +63,7 @@ double mcor_event_seconds(cl_event event);
 
 /* mcor_cl_error.c */
 const char* mcor_cl_error_name(cl_int error);
-/* Whether an error means that memory ran out. Drivers that allocate late report it in any later
- * call. */
+/* Whether an error means that memory ran out. Drivers that allocate late report it in any call. */
 bool mcor_is_no_memory(cl_int error);
 /* Sets the error sentence about a call that failed. */
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
@@ -81,8 +79,7 @@ static inline bool mcor_is_pocl(const char* platform_name)
   return strcmp(platform_name, "Portable Computing Language") == 0;
 }
 
-/* Returns a variable of the environment that only tests set. Builds without tests do not read it,
- * and return NULL. */
+/* Returns a variable of the environment that only tests set; NULL in builds without tests. */
 static inline const char* mcor_test_setting(const char* name)
 {
 #ifdef MCOR_TESTING

@@ -239,8 +239,8 @@ static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const m
 /* The build that a call with the default options needs. */
 static const mcor_build mcor_usual_build = { 0 };
 
-/* Returns the best of the devices that can do a build: the built-in one, which starts at once, then
- * a GPU, then PoCL, then any other; -1: none. */
+/* Returns the index of the best device that can do a build: the built-in one, which starts at once,
+ * then a GPU, then PoCL, then any other; -1: none. */
 static int mcor_choose_device(const mcor_device_list* list, const mcor_build* build)
 {
   int best = -1, best_rank = 0;

@@ -136,8 +136,7 @@ void mcor_end_sight(mcor_sight* sight)
   *sight = (mcor_sight){ .count = 0 };
 }
 
-/* Returns an array's values in the given type; NULL: memory ran out. *made: memory to free, or
- * NULL. */
+/* Returns an array's values in a type; NULL: memory ran out. *made: memory to free, or NULL. */
 static const void* mcor_convert(const mcor_array* from, mcor_type type, int64_t values, void** made)
 {
   *made = from->type == type ? NULL : malloc((size_t)values * mcor_size_of(type));

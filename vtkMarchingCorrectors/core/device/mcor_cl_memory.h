@@ -16,8 +16,7 @@ typedef struct mcor_sight
   int count;
 } mcor_sight;
 
-/* Lets the host see all arrays of an input until mcor_end_sight, which is called after a failure,
- * too. */
+/* Lets the host see an input's arrays until mcor_end_sight, which must follow failures, too. */
 mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_sight* sight);
 void mcor_end_sight(mcor_sight* sight);
 

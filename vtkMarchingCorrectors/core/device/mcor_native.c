@@ -152,8 +152,7 @@ static cl_int mcor_device_info(
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
-/* Makes an object that is zero, except for its table. Returns NULL and sets *error if memory ran
- * out. */
+/* Makes an object that is zero, except for its table; NULL: memory ran out. Sets *error. */
 static void* mcor_make_object(size_t size, cl_int* error)
 {
   struct _cl_platform_id* object = calloc(1, size);

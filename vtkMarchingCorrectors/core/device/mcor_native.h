@@ -41,12 +41,10 @@ extern const mcor_native_program mcor_native_programs[];
 /* mcor_native_program.c. Returns the best instruction set of this processor and system for which
  * the library has programs; -1: none. */
 int mcor_best_instructions(void);
-/* Finds the program with these options, as given to clBuildProgram, for this processor; NULL:
- * none. */
+/* Finds this processor's program with these options, as given to clBuildProgram; NULL: none. */
 const mcor_native_program* mcor_find_program(const char* options);
 
-/* Returns the built-in device's platform; NULL if the library has no programs for this
- * processor. */
+/* Returns the built-in device's platform; NULL: the library has no programs for this processor. */
 cl_platform_id mcor_native_platform(void);
 /* Returns the threads of a context; these may be fewer than the device's units. */
 mcor_pool* mcor_native_pool(cl_context context);

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Groups the points where the field is evaluated. The particles around a group are gathered once
- * for all its points. */
+/* Groups the points where the field is evaluated: a group's points share the gathered particles. */
 
 #include "mcor_internal.h"
 

@@ -139,8 +139,7 @@ static mcor_status mcor_number_runs(
   return mcor_scan(context, flags, count, distinct_count);
 }
 
-/* Lists the distinct keys in order; index_of[i] becomes the index of key i among them. Sorts
- * `keys`. */
+/* Sorts `keys`, and lists the distinct ones; index_of[i]: the former key i's index among these. */
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)
 {
@@ -175,8 +174,7 @@ mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int c
   return MCOR_OK;
 }
 
-/* Most buckets for `keys` keys: memory stays proportional to the number of keys, however far apart
- * their values are. */
+/* Most buckets for `keys` keys, so that memory stays in proportion to the number of keys. */
 uint64_t mcor_most_buckets(int keys)
 {
   const uint64_t most = 4 * (uint64_t)keys + (1 << 20);

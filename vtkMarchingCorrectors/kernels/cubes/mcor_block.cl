@@ -11,8 +11,7 @@
  * Cubes of one size are sorted by key, like blocks, so mcor_find_block finds them. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube of the largest size. Writes the cube's key. All cubes of this size
- * exist. */
+/* One work-item = one of all cubes of the largest size. Writes the cube's key. */
 __kernel void mcor_block_all(
   const int count, __global const mcor_rung* rungs, const int level, __global ulong* keys)
 {
@@ -46,7 +45,7 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
 
 #if MCOR_OF_LATTICE
 /* One work-item = one cube. Reads the states of the cube and of the cubes around it. Writes whether
- * the cube is inactive. A missing neighbour was part of a larger, inactive cube. */
+ * the cube is inactive. A missing neighbour is off the lattice, or in a larger, inactive cube. */
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {

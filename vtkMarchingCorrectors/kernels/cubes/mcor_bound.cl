@@ -2,11 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The bound of complete seeds [III-C]: finds, from the particles that reach a box, whether all
- * nodes in the box are certainly void, above the iso value or below it.
+ * nodes in the box certainly have too low weights (void), are above the iso value, or below it.
  *
- * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the sign of
- * field - iso is the sign of F = sum c_j w_j - level, with level = 0 (Shepard) or iso. At every
- * point of the box, each w_j lies between its least and its greatest value in the box, so that
+ * With c_j = V_j norm / h_j^3 * f_j, where f_j is A_j - iso (Shepard), A_j (sum) or 1 (weight sum),
+ * the sign of field - iso is the sign of F = sum c_j w_j - level, with level = 0 (Shepard) or iso.
+ * At every point of the box, each w_j lies between its least and its greatest value in the box, so
+ * that
  *
  *   F >= sum of c_j * (least w_j where c_j > 0, greatest where c_j < 0) - level,
  *

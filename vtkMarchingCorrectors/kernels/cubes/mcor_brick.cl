@@ -14,8 +14,7 @@ __kernel void mcor_brick_count(
 
 /* One work-item = one word, which has a bit for each of 32 bricks. Reads the bits and the prefix
  * sums of their counts. For each brick whose bit is set, writes to the brick's slot the coordinates
- * and the seed cells. All cells of a brick are seeds if the brick's bit in seed_bits is set, else
- * none. */
+ * and the seed cells. All cells of a brick are seeds if its bit in seed_bits is set, else none. */
 __kernel void mcor_brick_fill(
   MCOR_BRICK_PARAMS, __global const uint* seed_bits, __global int4* bricks, __global ulong* seeds)
 {
@@ -29,9 +28,9 @@ __kernel void mcor_brick_fill(
   }
 }
 
-/* One work-item = one brick. Finds its upper neighbours, d = 1 to 7 (bits 1 x, 2 y, 4 z). Writes
- * the neighbour's slot to entry d - 1 of this brick, and this brick's slot to entry d + 6 of the
- * neighbour. Entries without a neighbour stay -1. */
+/* One work-item = one brick. Finds its upper neighbours: neighbour d = 1 to 7 is one brick up along
+ * x (if bit 0 of d is set), y (bit 1) and z (bit 2). Writes the neighbour's slot to entry d - 1 of
+ * this brick, and this brick's slot to entry d + 6 of the neighbour. Other entries stay -1. */
 __kernel void mcor_brick_neighbours(
   MCOR_BRICK_PARAMS, const int brick_count, __global const int4* bricks, __global int* neighbours)
 {
@@ -51,8 +50,8 @@ __kernel void mcor_brick_neighbours(
 }
 
 /* One work-item = one brick. Writes which of the brick's nodes are to be evaluated: all nodes if
- * their values are not known yet, else none. With leaves of several levels, a brick whose state is
- * certain is evaluated only if mcor_leaf_need marked its slot. A void brick is never evaluated. */
+ * their values are not known yet, else none. With several levels, a void brick is never evaluated,
+ * and a brick certainly above or below the iso value only if mcor_leaf_need marked its slot. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
@@ -62,9 +61,9 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
   need[slot] = known[slot] || idle ? 0 : ~0UL;
 }
 
-/* One work-item = one brick of the old set. If the new set has the brick, moves the brick's data to
- * the brick's slot in the new set. words: how many 4-byte words the values of a brick's nodes take.
- * The values of a brick are either all known or all unknown. */
+/* One work-item = one brick of the old set. If the new set has the brick, copies the brick's data
+ * to its slot in the new set. words: how many 4-byte words the values of a brick's nodes take. The
+ * values of a brick are either all known or all unknown. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,

@@ -35,8 +35,8 @@ MCOR_ONE_COPY void mcor_brick_masks(
   }
 }
 
-/* Returns a mask of the nodes or cells in some layers of a brick. x, y, z: the layers along the
- * axis: 0 the first, 1 all, 2 the last. */
+/* Returns a mask of the nodes or cells in some layers of a brick. x, y, z: 0 takes the first layer
+ * along the axis, 1 all layers, 2 the last. */
 ulong mcor_on_sides(int x, int y, int z)
 {
   return (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &

@@ -5,8 +5,8 @@
  * the field's decisions on its faces and on tunnels in it. The bit of a cell, or of an edge along
  * an axis, is the bit of its lowest node, x + 4 y + 16 z. */
 
-/* Makes masks of corners from the node masks of a brick and its upper neighbours: mask c becomes
- * the mask of each cell's corner c (bits x, y, z). */
+/* Turns m, the node masks of a brick and its upper neighbours, into masks of corners: bit n of mask
+ * c then belongs to corner c (bits x, y, z) of cell n. */
 MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -31,8 +31,7 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
   return some & ~all;
 }
 
-/* Returns the cells that are valid at all corners and have corners on both sides of the iso
- * value. */
+/* Returns the cells whose corners are all valid, and on both sides of the iso value. */
 ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
 {
   ulong some = 0, all = ~0UL, usable = ~0UL;
@@ -45,8 +44,7 @@ ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
   return some & ~all & usable;
 }
 
-/* Makes masks of the corners of a brick's cells, see mcor_cell_corners, from the node masks of all
- * bricks. */
+/* Makes masks of a brick's cell corners from all bricks' node masks, see mcor_cell_corners. */
 void mcor_corners_of(
   __global const ulong* masks, __global const int* neighbours, int slot, ulong* corners)
 {
@@ -68,16 +66,15 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 }
 
 /* A brick has MCOR_EDGE_MASKS masks of edges. Mask `axis` has the crossed edges along the axis;
- * mask 3 + axis the crossed edges next to a cell that is not used; mask 6 + axis the pinched edges.
- * Only two cells around a pinched edge are used, and they lie opposite to each other. Each of these
- * two cells has a vertex of its own on the edge. The second vertex is for the cell at lower
- * coordinates along the first of the other two axes. */
+ * mask 3 + axis the crossed edges next to a cell that is not used (see mcor_march.cl); mask 6 +
+ * axis the pinched edges. Only two cells around a pinched edge are used, and they lie opposite to
+ * each other. Each of these two cells has a vertex of its own on the edge. The second vertex is for
+ * the cell at lower coordinates along the first of the other two axes. */
 
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
-/* Returns how many vertices of a brick lie on edges from nodes before node n. e: the brick's masks
- * of edges. */
+/* Returns how many vertices of a brick lie on edges from nodes before n. e: its edge masks. */
 int mcor_edge_rank(__global const ulong* e, int n)
 {
   const ulong below = (1UL << n) - 1;
@@ -89,9 +86,9 @@ int mcor_edge_rank(__global const ulong* e, int n)
   return rank;
 }
 
-/* Writes the vertex of each crossed edge of a brick's cells to numbers[axis][x + 5 y + 25 z], where
- * (x, y, z) is the edge's lower node in the brick. A pinched edge gets -1 - v, where v is the first
- * of its two vertices. upper: slots of the brick's upper neighbours, or -1. */
+/* Writes the number of the vertex on each crossed edge of a brick's cells to numbers[axis][x + 5 y
+ * + 25 z], where (x, y, z) is the edge's lower node in the brick. A pinched edge gets -1 - v, where
+ * v is the first of its two vertices. upper: slots of the brick's upper neighbours, or -1. */
 void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {
@@ -123,7 +120,7 @@ void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   }
 }
 
-/* Returns the Marching Cubes case of a cell: bit c is set if corner c is above. */
+/* Returns the Marching Cubes case of a cell: bit c is set if corner c is above the iso value. */
 int mcor_march_case(const ulong* corners, int cell)
 {
   int result = 0;
@@ -134,9 +131,9 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* Returns which of the rows of a cell's case, i.e. ways to triangulate the cell, is used. Each
- * ambiguous face whose nodes above the iso value are joined sets a bit in the row's number.
- * corners: see mcor_cell_corners. */
+/* Returns the index of a cell's row, i.e. the way to triangulate the cell. If ambiguous face k
+ * (from 0) of its case joins the nodes above the iso value, 2^k is added to the index of the case's
+ * first row. corners: see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {

@@ -5,7 +5,7 @@
  * nodes are above the iso value of the free surface, so that no other particles are read. */
 
 /* Returns roughly which share of a box the tile's particles fill. The box is the query's box,
- * widened on all sides by the query's reach. */
+ * widened on all sides by the reach of particles of mean size. unit: see mcor_grid. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 {
   realv volume = 0, inv_h = 0;
@@ -34,7 +34,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
 /* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
  * above the iso value. The first point is `at`, the others are `step` apart. The terms are added in
- * another order than at a node; the margin of 1.0001 covers this, too. */
+ * another order than at a node; the margin of 1.0001 is larger than the difference. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();

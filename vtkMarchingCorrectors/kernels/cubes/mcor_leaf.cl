@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the cells of leaves that touch finer leaves. Such a cell also has nodes in the
- * middle of edges or faces; mcor_adaptive_cell.h makes its triangles. The leaf's nodes have
- * coordinates 0 to 8, in finer cells from its first node. Finer nodes and the edges between them
- * are in slots of the finer level; other edges are in slots of the leaf's level. */
+/* Adaptive cubes: the cells of leaves, i.e. of bricks that are not split, that touch finer leaves.
+ * Such a cell also has nodes in the middle of edges or faces; mcor_adaptive_cell.h makes its
+ * triangles. The leaf's nodes have coordinates 0 to 8, in finer cells from its first node. Finer
+ * nodes and the edges between them are in slots of the finer level; other edges are in slots of the
+ * leaf's level. */
 
 /* The nodes of a leaf. */
 typedef struct
@@ -12,7 +13,7 @@ typedef struct
   __global const int* slots; /* made by mcor_leaf_tables */
   __global const ulong *above, *valid;
   uint hanging; /* parts of the leaf with finer nodes, bits MCOR_DIRECTION */
-  int plane;    /* 1: in a plane, where nodes above the plane copy the nodes in it */
+  int plane;    /* 1: cells are squares; mcor_leaf_node takes the node at z = 0 */
   ulong corners_above[8], corners_valid[8]; /* masks of cells, see mcor_cell_corners */
 } mcor_leaf;
 
@@ -62,7 +63,7 @@ void mcor_leaf_masks(const mcor_leaf* leaf, __global const ulong* masks, ulong m
   for (int d = 0; d < 8; ++d)
   {
     const int slot = leaf->slots[d];
-    const bool above = leaf->plane && d > 3; /* no cell needs these */
+    const bool above = leaf->plane && d > 3; /* no square needs these nodes */
     m[d] = slot < 0 ? 0 : masks[slot];
     for (int n = 0; n < 64 && slot < 0 && !above; ++n)
     {
@@ -93,8 +94,7 @@ mcor_leaf mcor_leaf_load(int i, int plane, __global const uint* finer, __global 
   return leaf;
 }
 
-/* Returns where in the leaf a coordinate of 0 to 8 lies: 0 on the first side, 1 within the leaf, 2
- * on the last side. */
+/* Returns 0 if coordinate u (0 to 8) is on the leaf's first side, 1 within it, 2 on the last. */
 int mcor_leaf_zone(int u)
 {
   return u == 0 ? 0 : u == 8 ? 2 : 1;
@@ -186,8 +186,7 @@ void mcor_leaf_mark(
   }
 }
 
-/* Parameters for the leaves and for the nodes of all bricks. plane: 1 if cells are squares in a
- * plane. */
+/* Parameters for leaves and the nodes of all bricks. plane: 1 if cells are squares in a plane. */
 #define MCOR_LEAF_PARAMS                                                                           \
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
@@ -222,8 +221,7 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __g
   cells[slot] = some ? ~0UL : 0;
 }
 
-/* Returns the number of the vertex on a cell's edge. axis, lower: the edge, as in
- * mcor_leaf_edge_of. */
+/* Returns the number of the vertex on a cell's edge. axis, lower: as in mcor_leaf_edge_of. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {

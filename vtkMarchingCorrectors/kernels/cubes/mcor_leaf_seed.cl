@@ -19,8 +19,9 @@ uint mcor_row_of(__global const uint* bits, int row)
   return bits[row >> 2] >> 8 * (row & 3) & 0xff;
 }
 
-/* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row have their bits set. blocks: see
- * mcor_seed_blocks; row: the number of the row's first brick in the block. */
+/* Returns the bits of bricks x = -1 to 8 as bits 0 to 9: of a row's 8 bricks in a block, and of one
+ * brick on either side. blocks: see mcor_seed_blocks; row: the number of the row's first brick in
+ * the block. */
 uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 {
   const int word = row >> 5, at = row & 31;
@@ -41,7 +42,7 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   const uint own = mcor_row_of(leaves, item);
   const int4 brick = mcor_brick_of_number(rungs, block_keys, m);
   const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick);
-  uint finer = 0, all = ~0u; /* bits x: a finer brick is around; all bricks up exist */
+  uint finer = 0, all = ~0u; /* bit x: any brick around is split; none up is larger */
   for (int d = 0; d < 9; ++d)
   {
     const int4 other = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
@@ -65,9 +66,9 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
     __global const ulong *known, __global const ulong *above, __global const ulong *valid
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
-/* Returns on which sides of the iso value nodes of brick m lie: with d = 0 all its nodes, else the
- * nodes that it shares with the leaf that is d (bits x, y, z) down from it. If the brick is no
- * leaf, returns MCOR_EXAMINE. */
+/* Returns on which sides of the iso value valid nodes of leaf m lie: with d = 0 all its nodes, else
+ * the nodes that it shares with the leaf that is d (bits x, y, z) down from it. If the values are
+ * not known, returns the leaf's state; if brick m is no leaf, MCOR_EXAMINE. */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))
@@ -116,7 +117,8 @@ __kernel void mcor_leaf_choose(
 }
 
 /* One work-item = one word of 32 bricks. Reads the prefix sums of the counts of chosen leaves.
- * Writes the chosen leaves in order, and for each leaf which bricks around the leaf are split. */
+ * Writes the chosen leaves in order, and for each leaf, as bits MCOR_DIRECTION, which bricks around
+ * it are split. */
 __kernel void mcor_leaf_list(MCOR_BLOCK_PARAMS, __global const uint* chosen,
   __global const int* scanned, __global const uint* split, __global int4* cells,
   __global uint* finer)

@@ -7,11 +7,11 @@
 
 #define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
 
-/* Returns the bricks whose nodes a leaf needs. Bits 0 to 7 are bricks of its level (x, y, z up).
- * Bit 8 + x + 3 y + 9 z (each 0 to 2) is the brick of the finer level that is x, y, z bricks from
- * the finer brick at the leaf's lowest corner. If a leaf beyond a far side is finer, the finer
- * bricks also have the leaf's nodes on that side. In a plane, only bricks of the plane's layer are
- * needed. */
+/* Returns the bricks whose nodes a leaf needs. Bit d = 0 to 7 is the brick of its level that is d
+ * (bits x, y, z) up from it. Bit 8 + x + 3 y + 9 z (each 0 to 2) is the brick of the finer level
+ * that is x, y, z bricks from the finer brick at the leaf's lowest corner. If a leaf beyond a far
+ * side is finer, the finer bricks also have the leaf's nodes on that side. In a plane, only bricks
+ * of the plane's layer are needed. */
 ulong mcor_leaf_wanted(uint finer, int plane)
 {
   ulong wanted = 0;
@@ -101,9 +101,10 @@ bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above
   return crossed != 0;
 }
 
-/* One work-item = one leaf. Writes to `mixed` whether the leaf's cells have nodes on both sides of
- * the iso value; a leaf that is not mixed has no surface. Marks the slots whose values the cells of
- * a mixed leaf need, even slots whose sides are certain. Several leaves may mark one slot. */
+/* One work-item = one leaf. Writes to `mixed` whether the leaf may have surface: whether it has
+ * crossed cells, or, beside finer leaves or in a plane, whether the bricks that it needs have valid
+ * nodes on both sides of the iso value. Marks the slots whose values the cells of a mixed leaf
+ * need, even slots whose sides are certain. Several leaves may mark one slot. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global ulong* need)

@@ -13,7 +13,7 @@
  * plain. Removes such a cell from `used` if it is not valid at all nodes, or if all its nodes are
  * on one side of the iso value. Marks the edges of the cells that stay, and writes how many
  * triangles (in a plane, lines) they have to the leaf's slot. Adds to flat_loops the number of
- * polygons of owned cells that lie in one face of the cell. */
+ * owned cells' polygons that lie in a single face of their cell. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -57,7 +57,7 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
 }
 
 /* One work-item = one brick. Reads the node masks. Keeps a plain cell in `used` only if it is valid
- * at all nodes and has nodes on both sides. Writes the plain cells that stay to plain_used. */
+ * at all nodes, with nodes on both sides of the iso value. Writes the kept cells to plain_used. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
   __global const ulong* plain, __global const ulong* above, __global const ulong* valid,
   __global ulong* used, __global ulong* plain_used)
@@ -149,8 +149,7 @@ real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 bric
 
 /* One work-item = one brick. Reads the brick's crossed edges and the node values. Writes for each
  * vertex its lattice edge: x, y, z of the edge's lower node; w = axis, plus 4 if a cell around the
- * edge is not used, plus 256 times the level. Also writes the values at both ends of the edge, less
- * the iso value. */
+ * edge is not used, plus 256 times the level. Also writes the values at both ends, minus iso. */
 __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
   __global const int* neighbours, __global const int4* bricks, __global const ulong* edges,
   __global const real* node_value, __global const int* vertex_base, const real iso,
@@ -185,8 +184,8 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
 
 /* One work-item = one brick. Reads used cells, node masks, decisions and the numbering of vertices
  * by edge. Writes triangles (in a plane, lines) and, if `follows` is set, the keys of their cells.
- * This call owns the cells in the box x0 to z1. Other ranks own the other cells in the box all_x0
- * to all_z1. */
+ * Keys mark cells outside of the box x0 to z1, which this call does not own, and among them the
+ * cells in the box all_x0 to all_z1, which other ranks own. */
 __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   __global const ulong* plain, __global const int* leaf_of, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,
   const int all_x0, const int all_y0, const int all_z0, const int all_x1, const int all_y1,
@@ -226,8 +225,8 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
       : is_plain
       ? mcor_cell_emit(mcor_cell_cut(m, MCOR_CUT_ARGS, slot, cell, &tunnels), numbers, cell, next)
       : mcor_leaf_emit(&leaf, cell, edges, vertex_base, next);
-    for (int i = 0; i < made && follows;
-         ++i) /* Intel's compiler (2026.2) crashes on another form */
+    /* Intel's compiler (2026.2) crashes on other forms of this loop. */
+    for (int i = 0; i < made && follows; ++i)
     {
       triangle_cells[to + i] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL |
         (others >> cell & 1) * MCOR_OTHERS_CELL;
@@ -236,8 +235,8 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   }
 }
 
-/* One work-item = one pair of vertices. Replaces the `width` numbers of vertex x by the numbers
- * of vertex y. */
+/* One work-item = one pair (x, y) of vertices. Replaces the `width` numbers of vertex x by the
+ * numbers of vertex y. */
 __kernel void mcor_march_replace(
   const int count, __global const int2* pairs, const int width, __global real* numbers)
 {
@@ -248,8 +247,7 @@ __kernel void mcor_march_replace(
   }
 }
 
-/* One work-item = one mask. Writes how many bits are set in the mask and also in the mask of the
- * same index in `within`. */
+/* One work-item = one mask i. Writes how many bits masks[i] and within[i] have in common. */
 __kernel void mcor_march_bits(
   const int count, __global const ulong* masks, __global const ulong* within, __global int* bits)
 {

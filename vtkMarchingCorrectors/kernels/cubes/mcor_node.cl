@@ -3,8 +3,8 @@
 
 /* Evaluation of the field at nodes. mcor_node_lanes.cl has what differs on CPUs. */
 
-/* Nodes that one work-item evaluates: a whole brick if particles are gathered for many lanes at
- * once. The nodes form groups of MCOR_LANES. */
+/* Nodes that one work-item evaluates: one, or with several lanes all 64 nodes of a brick, in groups
+ * of MCOR_LANES. MCOR_ITEM_EXTENT: from the first of these nodes to the last, along each axis. */
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 #define MCOR_ITEM_EXTENT (MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1)
@@ -16,8 +16,8 @@ typedef struct
   realv s, w, t;
 } mcor_node_sums;
 
-/* Return the group of a work-item's n-th node, and the node's lane in it. Nodes of a group are close
- * together: 2 x 2 x MCOR_GROUP_Z nodes, with one lane a single node. */
+/* Return the group of a work-item's n-th node, and the node's lane in the group. Nodes of a group
+ * are close together: 2 x 2 x MCOR_GROUP_Z nodes, with one lane a single node. */
 #define MCOR_GROUP_Z (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 int mcor_group_of(int n)
 {
@@ -71,10 +71,10 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
 }
 #endif
 
-/* Returns the query for the nodes up to `extent` from node `first` of a brick. share: share of each
- * particle's support that counts. All bricks of a region count positions from the region's first
- * node, so a node's value is the same with the particles of the brick and with the particles of the
- * whole region. */
+/* Returns the query for the box of nodes of a brick from node `first` to node first + extent.
+ * share: the share of each particle's support that counts. All bricks of a region count positions
+ * from the region's first node, so a node's value is the same with the particles of the brick and
+ * with the particles of the whole region. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
   const mcor_grid* grid, int4 brick, int4 first, int4 extent, float share)
 {

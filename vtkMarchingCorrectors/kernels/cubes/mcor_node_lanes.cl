@@ -67,8 +67,8 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 #define mcor_group_weight mcor_weight
 #endif
 
-/* Adds the tile's particles to the sums of a group. first: its first node, in cubes from the
- * query's origin. term: the particles' weights times values. */
+/* Adds the tile's particles to the sums of a group. first: the group's first node, in cubes from
+ * the query's origin. term: the particles' weights times values. */
 void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], const real first[3],
   real share, mcor_node_sums* sums)
 {

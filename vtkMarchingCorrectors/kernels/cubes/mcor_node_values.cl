@@ -1,12 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluates nodes, and finds their sides of the iso value. The functions for nodes are in
- * mcor_node.cl. */
+/* Evaluates nodes by the functions of mcor_node.cl, and finds their sides of the iso value. */
 
 /* One work-item = MCOR_ITEM_NODES nodes of one of the `count` bricks from slot `first` on. If the
- * nodes are needed, reads the particles that reach them, and writes the nodes' values and
- * weights. */
+ * nodes are needed, writes their values and weights. */
 __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)

@@ -60,7 +60,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   mcor_add_cells(reached, own, cells);
   if (!mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
   {
-    grown[own] = cells; /* else it is treated again when all its nodes are known */
+    grown[own] = cells; /* else the brick is treated again when all its nodes are known */
   }
   const ulong fresh = cells & ~before & used;
   for (int face = 0; face < 6 && fresh; ++face)

@@ -4,13 +4,13 @@
 /* Complete seeds [III-C]: finds the bricks whose nodes must be evaluated so that no crossed edge is
  * missed. Nodes are left out if their side of the iso value is certain without evaluation, or if
  * their weight is certainly too low. Nodes are tested in cubes: whole blocks (32^3 nodes) or larger
- * cubes, then regions (8^3), then bricks (4^3). A crossed edge has nodes on both sides of the iso
- * value. If both of its nodes are left out, two neighbouring bricks are certain of different sides:
- * mcor_seed_request has both bricks evaluated after all. If one of its nodes is left out, this
- * node's brick is certain of another side than a valid node of an evaluated brick next to it:
- * mcor_seed_grow has the certain brick evaluated, too. All bricks of uncertain regions have slots
- * while they are tested, so that the particles gathered for the bound are also used for the nodes'
- * values (mcor_seed_bricks). */
+ * cubes, then regions (8^3), then bricks (4^3). A crossed edge joins a node above the iso value to
+ * a node below it. If both nodes are left out, their bricks are neighbours, one certainly above and
+ * one certainly below: mcor_seed_request has both evaluated after all. If one node is left out, a
+ * brick that is certainly on one side touches a valid node on the other side: mcor_seed_grow has
+ * this brick evaluated, too. All bricks of uncertain regions have slots while the bricks are
+ * tested: mcor_seed_bricks gathers particles to bound the field, and computes the nodes' values
+ * from the same particles. */
 
 #if !MCOR_OF_LATTICE
 /* Whether the range of the particles' values can decide on which side of the iso value nodes are: a
@@ -34,7 +34,7 @@ typedef struct
     side_flags, side_margin, iso, node_threshold                                                   \
   }
 
-/* Cells from `first` to before `last`, by axis. */
+/* A box of cells. Along each axis, the first cell is `first`, and `last` is one beyond the last. */
 #define MCOR_BOX_PARAMS                                                                            \
   const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,     \
     const int last_z
@@ -105,8 +105,7 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
   return (MCOR_ANY(above) ? 1 : 0) | (MCOR_ANY(below) ? 2 : 0);
 }
 
-/* If more than this number of particles reach a coarse cube, the cube is divided without computing
- * a bound. */
+/* If more particles than this reach a coarse cube, it is divided without computing a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
 /* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
@@ -152,8 +151,8 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 
-/* mcor_region_number returns the number of a region's first brick. The number of brick b (bits x,
- * y, z) of the region is greater by mcor_region_offset(b). */
+/* mcor_region_number returns the number of the first of a region's 2 x 2 x 2 bricks. The number of
+ * brick b (bits x, y, z) of the region is greater by mcor_region_offset(b). */
 int mcor_region_number(int region)
 {
   const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
@@ -165,7 +164,7 @@ int mcor_region_offset(int b)
 }
 
 /* Returns the bricks of a region that are leaves, as bits. With one level, all bricks are leaves.
- * number: of the region's first brick. */
+ * number: the number of the region's first brick. */
 uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 {
   uint found = 0;
@@ -254,8 +253,7 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
 /* Writes the state of a brick in an uncertain region. The state covers the brick's nodes, and for a
  * leaf beside other levels also the nodes on its far sides. wide: the particles of the region; used
  * only if complete. If a work-item evaluates whole bricks, also evaluates the nodes of an uncertain
- * brick, whose particles are already gathered. Returns a mask of the nodes whose values are known
- * now. */
+ * brick, whose particles are already gathered. Returns a mask of the evaluated nodes. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
@@ -342,8 +340,9 @@ int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int4 brick)
     mcor_find_block(MCOR_BLOCK_ARGS, block), mcor_find_block(MCOR_BLOCK_ARGS, block + step));
 }
 
-/* Returns which bricks x = -1 to 8 of a row are certainly above (bits 0 to 9), and which are
- * certainly below (bits 16 to 25). row: the number of the row's first brick in its block. */
+/* Returns which bricks are certainly above the iso value (bits 0 to 9), and which are certainly
+ * below it (bits 16 to 25). The bricks are x = -1 to 8: a row's 8 bricks in a block, and one brick
+ * on either side. row: the number of the row's first brick in its block. */
 uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
 {
   uint sides = 0;
@@ -357,7 +356,7 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
 }
 
 /* One work-item = one row of 8 bricks of a block. Reads the states. Requests each uncertain brick,
- * and each brick that is certain of another side than a brick next to it. */
+ * each brick certainly above the iso value beside one certainly below it, and the reverse. */
 __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)
 {
@@ -394,8 +393,9 @@ __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactiv
 }
 
 /* One work-item = one brick; bricks without `fresh` nodes were treated before. Reads its nodes'
- * sides, and the states of bricks around it. Requests each brick that is certain of another side
- * than a valid node next to it. */
+ * sides, and the states of bricks around it. Requests each brick that is certainly on one side of
+ * the iso value and touches a valid node of this brick on the other side. Sets grown[0] if a
+ * requested brick is new. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
   __global const uchar* states, __global uint* brick_bits, __global int* grown)

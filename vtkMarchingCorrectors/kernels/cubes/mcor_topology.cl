@@ -5,15 +5,16 @@
  * value, and the other two below. The field at the saddle of the face's bilinear interpolant
  * decides which nodes are connected. The brick that owns the face's lowest node evaluates the
  * saddle once, so the cells on both sides of the face read the same answer. Cells whose surface has
- * two loops come next: the field at the saddles of the trilinear interpolant decides whether a
- * tunnel joins the loops.
+ * two loops, i.e. closed polygons, come next: the field at the saddles of the trilinear interpolant
+ * decides whether a tunnel joins the loops.
  *
  * With adaptive cubes, the field decides on faces between two plain cells of one level, and on
  * tunnels in plain cells; all other ambiguous faces follow the case table. Which faces the field
  * decides depends on the leaves alone, so cells on both sides agree. */
 
 /* Whether the field at a sample, i.e. a point where the field is evaluated, is above the iso value.
- * The field is neither above nor below if no particle reaches the sample, see mcor_evaluate. */
+ * value: the field minus the iso value, or 1e30 if no particle reaches the sample, see
+ * mcor_evaluate; then the field is neither above nor below. */
 bool mcor_sample_is_above(real value)
 {
   return value >= 0 && value != (real)1e30f;
@@ -40,8 +41,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
     const ulong between = leaf_count == 0 ? ~0UL
       : plane                             ? p[0]
                                           : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
-    const ulong layer =
-      plane ? 0xffffUL : ~0UL; /* in a plane, only the squares, one layer, may be ambiguous */
+    const ulong layer = plane ? 0xffffUL : ~0UL; /* in a plane, cells are one layer of squares */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
     const ulong ambiguous = reached & (m[0] ^ m[du]) & (m[0] ^ m[dv]) & ~(m[0] ^ m[du | dv]);
@@ -62,7 +62,7 @@ real mcor_topology_value(
   return node_value[owner * 64L + ((x & 3) | (y & 3) << 2 | (z & 3) << 4)];
 }
 
-/* Returns part / whole, or 0.5 if `whole` is 0. It may be 0 on a device without denormal
+/* Returns part / whole, or 0.5 if `whole` is 0. `whole` may be 0 on a device without denormal
  * numbers. */
 real mcor_topology_part(real part, real whole)
 {
@@ -75,8 +75,8 @@ int4 mcor_topology_node(__global const int4* bricks, int slot, int n)
   return (int4)(node.x, node.y, node.z, 0);
 }
 
-/* One work-item = one brick. Reads its ambiguous faces and node values. Writes the saddle of each
- * face: node and offset. */
+/* One work-item = one brick. Reads its ambiguous faces and node values. Writes each face's saddle,
+ * as the face's lowest node and the offset from it in edges. */
 __kernel void mcor_topology_saddles(const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
   __global const int* base, const real iso, __global int4* sample_node,

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where the surface may be. A
- * brick that is needed has a slot for the values and masks of its nodes. Blocks are sorted by key.
- * Bricks are sorted by block, then by z, y, x. A slot's number is the number of needed bricks
- * before its brick, so it depends on the set of bricks alone. */
+/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks, each with 4 x 4 x 4 nodes, exist
+ * where the surface may be. A brick that is needed has a slot for the values and masks of its
+ * nodes. Blocks are sorted by key. Bricks are sorted by block, then by z, y, x. A slot's number is
+ * the number of needed bricks before its brick, so it depends on the set of bricks alone. */
 
 #define MCOR_BLOCK_PARAMS                                                                          \
   const int block_count, const int block_shift, __global const mcor_rung *rungs,                   \
@@ -17,13 +17,12 @@
  * a leaf's 27 parts: its inside (x = y = z = 1), faces, edges and corners. x, y, z are 0 to 2. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
-/* Whether a brick's state tells on which side of the iso value all its nodes are, so that their
- * values are not needed. */
+/* Whether a brick's nodes need no values, because its state tells that all are above the iso value,
+ * all are below it, or all have too low weights (MCOR_VOID). */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
 /* A block or brick is an int4: x, y, z count blocks or bricks of its level, w is the level. */
 
-/* Returns the key of a block. */
 ulong mcor_block_key(__global const mcor_rung* rungs, int4 block)
 {
   __global const mcor_rung* rung = rungs + block.w;
@@ -111,7 +110,6 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int4 brick)
   const int has_leaves, __global const uint *leaves, __global const uint *beside
 #define MCOR_TREE_ARGS has_leaves, leaves, beside
 
-/* Returns the block with a key. */
 int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
 {
   int level = 0;
@@ -124,7 +122,6 @@ int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
   return (int4)((int)(number % nx), (int)(number / nx % ny), (int)(number / nx / ny), level);
 }
 
-/* Returns the brick with number m. */
 MCOR_ONE_COPY int4 mcor_brick_of_number(
   __global const mcor_rung* rungs, __global const ulong* block_keys, int m)
 {
@@ -140,16 +137,15 @@ ulong mcor_brick_key(__global const mcor_rung* rungs, int4 brick)
     (ulong)mcor_place_in_block(brick);
 }
 
-/* Requests the brick with number m. Returns true if nothing had requested it before. The brick
- * has no slot until the host has placed it. */
+/* Requests the brick with number m. Returns true if nothing had requested it before. The brick has
+ * no slot until the host has given slots to all requested bricks. */
 bool mcor_request_brick(__global uint* brick_bits, int m)
 {
   const uint bit = 1u << (m & 31);
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
-/* Adds cells to the cells of a brick or leaf, 64 bits in two words. Returns the cells that are
- * new. */
+/* Adds cells to the cells of a brick or leaf, 64 bits in two words. Returns the new cells. */
 ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 {
   const uint low = (uint)added, high = (uint)(added >> 32);

@@ -4,8 +4,8 @@
 /* Types, constants and bit tricks that all kernels share. The host sets at build time:
  *
  *   MCOR_PROGRAM  which program this is, see MCOR_OF_LATTICE below and mcor_program.c
- *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, whose
- *                 vector units OpenCL compilers do not fill by themselves here; 1 on a GPU
+ *   MCOR_LANES    evaluation points that one work-item treats at once: 8 or 16 on a CPU, for
+ *                 which OpenCL compilers do not vectorise these kernels themselves; 1 on a GPU
  *   MCOR_DOUBLE   real is double instead of float
  *   MCOR_W, MCOR_DW, MCOR_DDW, MCOR_TENSOR, MCOR_SUPPORT    the SPH kernel, see mcor_sph_kernel.h
  *   MCOR_FIELD    the field, see below
@@ -190,8 +190,7 @@ int mcor_ctz(ulong m)
   return 63 - (int)clz(m & -m);
 }
 
-/* Returns the index of the first of the sorted keys [low, high) that is not below `key`, or
- * `high`. */
+/* Returns the index of the first of sorted keys [low, high) that is at least `key`, or `high`. */
 MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
 {
   while (low < high)

@@ -130,7 +130,7 @@ __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
     for (int k = begin; k < end; ++k)
     {
       const int i = list[k];
-      mcor_cluster_from(tile, i, points, at, d); /* made anew, because keeping it takes longer */
+      mcor_cluster_from(tile, i, points, at, d); /* again, because keeping d takes longer */
       const realv v = tile->weight[i] *
         mcor_weight_gradient(d, length + (k - begin), (realv)(tile->inv_h[i]), &slope, along);
       w += v;
@@ -182,7 +182,7 @@ void mcor_cluster_add(const mcor_grid* grid, const mcor_query* query, const mcor
   }
 }
 
-/* Writes the sums at all points of a cluster. The points are loaded already. */
+/* Sets weight and sums of a cluster, whose points are loaded already. */
 void mcor_cluster_sums(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   mcor_cluster* cluster, MCOR_ATTRIBUTE_PARAMS)
 {

@@ -47,9 +47,9 @@ __kernel void mcor_widen_sizes(const int count, const int plane, __global const 
   size[i] = weight[i] * h * h * (plane ? (real)1 : h);
 }
 
-/* Fits the query's box to the particles of lanes `from` and following. Stops before a particle that
- * is far from the first, or that has a lower x than its predecessor, as at the end of a row.
- * Returns the lane of that particle. */
+/* Fits the query's box to the particles of lanes `from` and following, and its radius to `support`
+ * times their largest smoothing length. Stops before a particle that is far from the first, or that
+ * has a lower x than its predecessor, as at the end of a row. Returns the lane of that particle. */
 int mcor_widen_place(
   const mcor_grid* grid, mcor_query* query, const mcor_widen_at* at, int from, real support)
 {

@@ -26,8 +26,8 @@ typedef struct
 #endif
 } mcor_tile;
 
-/* MCOR_TILE reads particles i, i + 1, ... of a tile, one in each lane; MCOR_EACH particle i for all
- * lanes; MCOR_INDEX particle i's index. */
+/* MCOR_TILE reads particles i, i + 1, ... of a tile, one in each lane. MCOR_EACH reads particle i
+ * for all lanes. MCOR_INDEX is the index of particle i in the sorted arrays. */
 #define MCOR_TILE(tile, name, i) MCOR_LOAD(i, (tile)->name)
 #define MCOR_EACH(tile, name, i) ((tile)->name[i])
 #define MCOR_INDEX(tile, i) ((tile)->list[i])
@@ -212,12 +212,11 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 #else
 #define MCOR_REACH_SIZE (MCOR_PARTS * (MCOR_TILE_SIZE + 16))
 
-/* Which particles of a tile reach each part of a group. One mask stands for MCOR_LANES successive
- * particles. */
+/* Which particles of a tile reach each part of a group. Each mask covers MCOR_LANES particles. */
 typedef struct
 {
   mcor_mask mask[MCOR_PARTS][MCOR_TILE_SIZE / MCOR_LANES + 1];
-  int chunks, longest; /* masks of a part; number of particles of the longest part */
+  int chunks, longest; /* masks of a part; the most particles that reach a part */
 } mcor_reach_masks;
 
 typedef struct

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Search grid [III-A]: particles sorted by cell; volumes. */
+/* The search grid [III-A]: sorts particles by cell. Also finds their volumes and weights. */
 
 #if MCOR_OF_LATTICE
 /* One work-item = a batch of particles. Reads positions and levels. Writes the keys of their search
@@ -62,7 +62,7 @@ bool mcor_grid_value_before(MCOR_PARTICLES, __global const real* value, int i, i
                            : i < j;
 }
 
-/* Sorts particles by a heap, which needs no further memory. */
+/* Sorts the particles in `order` by a heap, which needs no further memory. */
 void mcor_grid_heap_sort(
   MCOR_PARTICLES, __global const real* value, __global int* order, int count)
 {
@@ -228,7 +228,8 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
 }
 
 /* One work-item = one particle. Turns the particle's volume, in trim_weight (below 0 for solids),
- * into the weights V norm / (scaled h)^3. norm: the SPH kernel's norm. */
+ * into the trimming weight V norm / (scaled h)^3. Writes to `weight` the same, but 0 for solids.
+ * norm: the SPH kernel's norm. */
 __kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
   __global real* weight, __global real* trim_weight)
 {
@@ -240,7 +241,7 @@ __kernel void mcor_grid_weigh(const int count, const real norm, __global const r
 }
 
 /* One work-item = one sorted particle. Reads an array, of fix or real, in input order. Writes it in
- * sorted order, to a row that is `count` long. */
+ * sorted order, to row out_row of `out`, whose rows are `count` long. */
 __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   __global const fix* in, __global fix* out, const int out_row)
 {
@@ -260,8 +261,8 @@ bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
-/* One work-item = one sorted particle, if it is the first of several at one position. Sorts the
- * particles at this position by their scalar, so that results never depend on the order of the
+/* One work-item = one sorted particle. If it is the first of several that differ at most in their
+ * scalar, sorts these particles by their scalar, so that results never depend on the order of the
  * input. raw: the scalar in input order. */
 __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS,
   __global const real* raw, __global real* value, __global int* order)

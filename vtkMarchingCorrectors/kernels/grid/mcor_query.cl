@@ -21,9 +21,9 @@
 typedef struct
 {
   int particle_count, level_count, bucket_shift;
-  /* The unit of length is a cube, or the cell of a level of adaptive cubes, which is view_edge
-   * cubes long. unit: a fixed-point unit, in units of length; units: its inverse. All are powers of
-   * two. */
+  /* Queries, tiles and points measure lengths in cubes, or in cells of a level of adaptive cubes,
+   * which are view_edge cubes long. unit: a fixed-point unit, in this measure; units: 1 / unit. All
+   * three are powers of two. */
   real unit, units, view_edge;
   real edge[3]; /* length of an edge, at most 1 */
   fix step[3];  /* length of an edge, from node to node, in fixed-point units */
@@ -194,8 +194,8 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Skips empty rows: moves to the row before the level's next row with particles. If the next row
- * has another z, moves to the last row of the z before. */
+/* Skips empty rows: moves to the row before the level's next row with particles. If this row has
+ * another z, moves to the last row before that z. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
@@ -209,7 +209,7 @@ void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
   }
   else
   {
-    query->y = query->last[1]; /* the plane's end */
+    query->y = query->last[1]; /* the end of the rows at z */
     query->z = min(z - 1, query->last[2]);
   }
 }

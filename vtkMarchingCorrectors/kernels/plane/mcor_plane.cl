@@ -5,9 +5,9 @@
  * cell. The cell's upper nodes have the signs of the nodes in the plane, so all code that finds
  * cells and nodes works for squares, too.
  *
- * A square's side is halved if a finer square touches it, so a square is a polygon of 4 to 8 nodes.
- * Each crossed side, or crossed half of a side, has one vertex. The two squares that meet there
- * share the vertex. In each of the two squares, one line begins or ends at the vertex. */
+ * A square's side is halved if a finer square touches the side, so a square is a polygon of 4 to 8
+ * nodes. Each crossed side, or crossed half of a side, has one vertex. The two squares that meet
+ * there share the vertex. In each of the two squares, one line begins or ends at the vertex. */
 
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL

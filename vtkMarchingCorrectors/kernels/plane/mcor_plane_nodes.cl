@@ -1,11 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes in the plane. The values have the same bits as those of
- * mcor_node_values. */
+/* Evaluates the field at nodes in the plane. Values have the same bits as in mcor_node_values. */
 
-/* How many work-items share a brick's 16 nodes, and how many rows of nodes along x each of them
- * has. */
+/* How many work-items share a brick's 16 nodes, and how many rows of nodes along x each has. */
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 

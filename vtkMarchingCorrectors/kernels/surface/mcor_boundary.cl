@@ -13,7 +13,6 @@
  *
  * M is about the identity where particles surround x, and singular where they do not. */
 
-/* A symmetric matrix. */
 typedef struct
 {
   realv xx, yy, zz, xy, yz, zx;
@@ -62,8 +61,7 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
  * which some devices do not have. */
 #define MCOR_EIGEN_LEAST (MCOR_DOUBLE ? (real)1e-100 : (real)1e-9f)
 
-/* Makes Jacobi's rotation in the plane of axes p and q, which turns pq into 0. r is the third
- * axis. */
+/* Makes Jacobi's rotation of axes p and q, which turns pq into 0. r is the third axis. */
 void mcor_eigen_rotate(
   realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
 {
@@ -85,9 +83,8 @@ void mcor_eigen_rotate(
   }
 }
 
-/* Returns the smallest eigenvalue of a symmetric matrix, and finds its eigenvector e. It never
- * divides by 0, so any matrix is allowed. If eigenvalues coincide, e is one of their
- * eigenvectors. */
+/* Returns the smallest eigenvalue of a symmetric matrix, and finds its eigenvector e. No division
+ * is by 0, so any matrix is allowed. If eigenvalues coincide, e is one of their eigenvectors. */
 realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
 {
   mcor_symmetric a = *m;

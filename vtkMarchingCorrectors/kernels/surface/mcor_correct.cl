@@ -219,7 +219,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
  * value. With `lines`, reads the starts of lines from `offset` instead. Writes each vertex's
  * offset, value, gradient, trimming weight, number of evaluations and attributes. Writes to
  * `linear` the linear position along the edge less the final position, as a share of the edge; on a
- * line, 1 if the surface is not reached. limit 0: no correction (preview). */
+ * line, minus the final position, or 1 if the surface is not reached. limit 0: no correction. */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,

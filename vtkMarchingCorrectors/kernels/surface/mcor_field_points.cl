@@ -4,8 +4,7 @@
 /* The field at points; the functions for it are in mcor_evaluate.cl. */
 
 /* One work-item = one group of points that are not on lattice edges: points of caps, and points
- * where the field decides the topology. Writes value, gradient, weight and attributes at each
- * point. */
+ * where the field decides the topology. Writes value, gradient, weight and attributes. */
 __kernel void mcor_field_points(MCOR_GROUP_PARAMS, const real iso, __global real4* offset,
   __global real* value, __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
 {

@@ -87,15 +87,17 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 #define MCOR_TRIM_STEP ((real)0.25)
 
 /* Most steps back to where the Shepard mean exists. Each step goes half of the remaining way to the
- * edge's end. No step goes to the end itself, where cuts of several edges would meet. */
+ * edge's end, or to MCOR_TRIM_REACH if the end is farther. No step goes to the end itself, where
+ * cuts of several edges would meet. */
 #define MCOR_TRIM_RETREATS 12
 
 /* Greatest |w - threshold| of a cut vertex. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
-/* Limits of trimming. threshold: of the weight or of the boundary eigenvalue; fluid_share: the
- * share of the weight that the fluid needs, if above 0; lacking: points that the fluid's own weight
- * may limit. steps: most steps of a cut vertex; tolerance: its greatest |field - iso|. */
+/* Limits of trimming. threshold: the least weight, or the least boundary eigenvalue. fluid_share:
+ * the fluid's least share of the weight; 0: no such limit. lacking: lanes in which the fluid's own
+ * weight may be too low for a mean. steps: a cut vertex moves at most this often. tolerance: the
+ * greatest |field - iso| of a cut vertex. */
 typedef struct
 {
   real iso, tolerance, threshold, fluid_share;

@@ -798,10 +798,10 @@ extern "C"
   } mcor_samples;
 
   /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The
-   * scalar of the input is not read. These options apply: sph_kernel, field, h_scale, outputs,
-   * node_threshold, precision, memory_limit, periodic and progress; cube_size and cube_size_factor
-   * only set the unit of length on the device. The bits of a point do not depend on the other
-   * points. *samples is overwritten. */
+   * scalar of the input is not read. These options apply: sph_kernel, dimension, field, h_scale,
+   * outputs, node_threshold, precision, memory_limit, periodic and progress; cube_size and
+   * cube_size_factor only set the unit of length on the device. The bits of a point's values do not
+   * depend on the other points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);
@@ -878,9 +878,9 @@ extern "C"
     MCOR_SECTION_SHAPE_COUNT
   } mcor_section_shape;
 
-  /* Where flow is measured. In two dimensions a section is its line in the plane of the particles,
-   * and areas are lengths: a rectangle needs an edge along the constant axis, a disc a normal in
-   * the plane; a box has four sides. */
+  /* Where flow is measured. In two dimensions, a section is a line in the particles' plane, and its
+   * area is a length. A rectangle then needs an edge along the constant axis, a disc needs a normal
+   * in the plane, and a box has four sides. */
   typedef struct mcor_section
   {
     mcor_section_shape shape;
@@ -912,9 +912,9 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. The tolerance of a section's integrals is
-   * 2.5e-6 times the section's area, greatest speed and greatest density. Options, globals and
-   * ranks are as for mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. The tolerance of `area` is 2.5e-6 times
+   * the section's area; for volume_flux, times the greatest speed; for mass_flux, times greatest
+   * speed and density. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -925,16 +925,16 @@ extern "C"
     /* Direction of the line of sight; its length and sign do not matter. All 0: the constant
      * axis of a plane, else z. */
     double direction[3];
-    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, or along axes without one, all that
-     * particles reach. Sides may be infinite. The image shows the box as it is seen along the line
-     * of sight. If the line of sight is x, y or z, a particle counts if its position along this
-     * axis is in the box and its kernel reaches the image; otherwise, if its position is in the
-     * box. It counts with its whole kernel. */
+    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, or along axes without a period, all that
+     * particles reach. Sides may be infinite. The image shows the box, seen along the line of
+     * sight. If this line is along x, y or z, a particle counts if its kernel reaches the image and
+     * its position along this axis is in the box. For another line, it counts if its position is in
+     * the box. A particle that counts does so with its whole kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
-    /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: the
-     * kernel's column integral, averaged over the pixel; if masses are the weight, sum m A F / sum
-     * m F. data NULL: the image shows column integrals. */
+    /* [count], 1 component. The image shows means, sum V B A F / sum V B F. V: volumes; B: weights;
+     * A: the scalar; F: the kernel's column integral, averaged over the pixel. If the weights are
+     * masses m, m replaces V B. data NULL: the image shows column integrals. */
     mcor_array weight;
     const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
   } mcor_view;
@@ -971,12 +971,12 @@ extern "C"
   {
     int64_t count;  /* of particles */
     double* factor; /* [count]; 1 for solids */
-    double* volume; /* [count], of the original lengths; NULL where they are not computed */
+    double* volume; /* [count], for the original lengths; NULL: no volumes are computed */
     uint8_t* outside; /* [count], 1 if statistics.widening_outside counts the particle */
     mcor_statistics statistics;
   } mcor_widening;
 
-  /* Makes a smoother surface possible: flat surfaces become flat, and drops, threads and sheets
+  /* Makes a smoother surface possible: bumps on flat surfaces vanish, but drops, threads and sheets
    * stay. Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which
    * the weight sum at the particle, sum_k V_k W(x_j - x_k, s h_j), stays above the iso value of the
    * free surface (above 0.5 if a scalar is contoured); mcor_widen.c has the whole rule. The surface

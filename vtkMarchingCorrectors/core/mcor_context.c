@@ -159,7 +159,8 @@ mcor_status mcor_prepare(
   return MCOR_OK;
 }
 
-/* Tries once to run a call. After a failure, nothing that the context keeps counts as valid. */
+/* Runs a call; if the lattice is too long, again without far particles. After a failure, or without
+ * far particles, nothing that the context keeps counts as valid. */
 static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)

@@ -102,8 +102,8 @@ extern "C"
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
     /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID; for
-     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 1: use the array
-     * that MCOR_WANT_FLUID finds; 2: also say, in unused_type, if it finds none. */
+     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 1: the array that
+     * MCOR_WANT_FLUID finds is used; 2: also, unused_type says so if no such array is found. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;
@@ -114,9 +114,9 @@ extern "C"
     double within[6];      /* bounds of the particles that count, unless all are 0 */
     const mcor_only* only; /* [only_count]; a value must be in one of its array's ranges */
     int only_count;
-    /* Names of arrays, one a line, or NULL. taken: arrays that are computed; excluded: other arrays
-     * that must not be attributes. The array of iso values has the name of what is contoured,
-     * unless a computed array has this name. */
+    /* Names of arrays, one per line, or NULL. taken: arrays that are computed; excluded: other
+     * arrays that must not be attributes. The array of iso values has the scalar's name, unless a
+     * computed array has this name. */
     const char *taken, *excluded;
     int filled; /* nonzero: a filled region is made; its iso values are not values of the scalar */
     int has_iso_values; /* nonzero: there is an array of iso values; no attribute has its name */
@@ -128,11 +128,11 @@ extern "C"
   typedef struct mcor_found
   {
     mcor_input input; /* valid until mcor_free_found */
-    /* The index of each role's array. For the first four roles, -1 if the input does not use the
-     * array. */
+    /* The index of each role's array. The first four roles have -1 if the input lacks the array. */
     int which[MCOR_ROLE_COUNT];
-    mcor_array views[MCOR_ROLE_COUNT]; /* each role's array as the core reads it, or its value; all
-                                        * quantities, even unused ones; for FLUID only a name */
+    /* Each role's array as the core reads it, or its one value, even if the input does not use it.
+     * For MCOR_ROLE_FLUID, only the name is set. */
+    mcor_array views[MCOR_ROLE_COUNT];
     double fluid_value;
     int64_t fluid_count; /* number of fluid particles */
     int* attributes;     /* [input.attribute_count], the array of each attribute of the input */

@@ -77,10 +77,10 @@ char* mcor_append(char* text, const char* format, ...)
   __attribute__((format(printf, 2, 3)))
 #endif
   ;
-/* Writes the text with its slots filled to out [size], and cuts it as snprintf does. Returns the
- * full length. */
+/* Writes to out [size] the text with words in place of its slots, such as {cube_size}. Cuts the
+ * result, and returns its full length, as snprintf does. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
-/* The room for a slot's word, with the final 0; a longer word is cut. */
+/* Bytes for the word that fills a slot, with the final 0; a longer word is cut. */
 #define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
 /* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. In arrays of two, the first element is
@@ -167,7 +167,7 @@ static inline bool mcor_wants(const mcor_context* context, mcor_output output)
   return context->run.options->outputs & output;
 }
 
-/* Returns the wall share that the options ask for. */
+/* Returns options.wall_share, with the default in place of "auto"; below 0: it is measured. */
 static inline double mcor_asked_share(const mcor_options* options)
 {
   return options->wall_share != MCOR_WALL_SHARE_AUTO ? options->wall_share
@@ -182,7 +182,7 @@ static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options*
     (options->field != MCOR_WEIGHT_SUM || mcor_asked_share(options) != 0);
 }
 
-/* Returns the wall share in use. */
+/* Returns the wall share in use, given or measured. */
 static inline double mcor_wall_share(const mcor_context* context)
 {
   const double share = mcor_asked_share(context->run.options);
@@ -327,9 +327,9 @@ void mcor_release_nodes(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
-/* Finds the cells that pairs mark (bricks.seeds), and the cells that are reached from marked cells
- * through crossed faces (bricks.cells, with the marked ones). Evaluates all nodes of these
- * cells. */
+/* Marks the cells between the particles of each pair (bricks.seeds). Finds all cells that are
+ * reached from marked cells through crossed faces (bricks.cells, with the marked cells). Evaluates
+ * the nodes of all cells that it finds. */
 mcor_status mcor_find_reached(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
@@ -373,7 +373,7 @@ bool mcor_output_evaluates(const mcor_context* context);
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface);
 /* mcor_surface.c. Prepares the surface's attributes: finds which attributes to leave out, and which
- * components of the others vary. */
+ * components of the remaining attributes vary. */
 mcor_status mcor_begin_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 /* The arrays of a surface's points except attributes, and their bytes per point. */
@@ -389,10 +389,9 @@ void mcor_list_surface_arrays(
  * NULL. */
 mcor_status mcor_grow(
   mcor_context* context, void** array, int64_t old, int64_t count, size_t width);
-/* Makes room for more points in all arrays that the caller wants. */
+/* Makes room for `points` more points in all arrays of the surface that the caller wants. */
 mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
-/* Moves a triangle and its keys to another place. */
 static inline void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to)
 {
   memmove(surface->triangles + 3 * to, surface->triangles + 3 * from, 3 * sizeof(int32_t));
@@ -438,9 +437,9 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 #define MCOR_CASE_ROWS 1200
 typedef struct mcor_case_table
 {
-  /* For each case: its first row << 6 | its ambiguous faces, face axis * 2 + side as bit 1 << face.
-   * The rows of a case are numbered from 0. If bit i of a row's number is set, the corners above
-   * the iso value are joined on the i-th ambiguous face. Rows with tunnels come last. */
+  /* For each case: its first row << 6 | its ambiguous faces, as bits 2 axis + side. A case's rows
+   * are numbered from 0. If bit i of a row's number is set, the corners above the iso value are
+   * joined on the i-th ambiguous face. Rows with tunnels come last. */
   cl_int cases[256];
   int row_count;
   mcor_cell_row rows[MCOR_CASE_ROWS];

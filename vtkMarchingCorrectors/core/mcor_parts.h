@@ -38,8 +38,8 @@ extern "C"
   typedef struct mcor_measure
   {
     int64_t fluid_count, solid_count;
-    /* The range of positions minus and plus scaled support radii; along a period, the range that
-     * the images in use may reach. */
+    /* The range of positions minus and plus scaled support radii; along a periodic axis, the range
+     * that the periodic images in use may reach. */
     double low[3], high[3];
     double x_low[3], x_high[3];      /* range of the positions of fluid particles */
     double h_min, h_max;             /* range of the smoothing lengths of fluid particles */
@@ -64,8 +64,8 @@ extern "C"
     double cut_high[3]; /* if cut, where the box or points end; `high` lies beyond */
   } mcor_measure;
 
-  /* Facts about all particles. A call with only some of the particles needs them to make its box of
-   * the surface. */
+  /* Facts about all particles. A call that has only some of the particles needs these facts to make
+   * the part of the surface in its box. */
   struct mcor_globals
   {
     mcor_measure measured;
@@ -74,8 +74,7 @@ extern "C"
       scalar_shift; /* about the median of the scalar; values on the device are relative to it */
     int component_count;
     mcor_global_component* components; /* [component_count], of all attributes in their order */
-    /* Adaptive cubes: the numbers of the bricks that are divided, ascending; NULL: one level
-     * only. */
+    /* Adaptive cubes: keys of the bricks that are divided, ascending; NULL: one level only. */
     int64_t split_count;
     uint64_t* splits; /* [split_count] */
   };

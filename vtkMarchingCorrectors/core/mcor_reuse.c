@@ -27,7 +27,7 @@ bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
     (input->solid == NULL) == (last->solid == NULL);
 }
 
-/* Returns a number that identifies the split bricks. */
+/* Returns a hash of the keys of the split bricks. */
 static uint64_t mcor_hash_splits(const mcor_globals* globals)
 {
   uint64_t hash = (uint64_t)globals->split_count;

@@ -19,8 +19,8 @@
 typedef struct mcor_level
 {
   MCOR_TYPE(ulong) base; /* key of the level's cell (0, 0, 0) */
-  /* In fixed-point units. period: the period's length; 0: none. side: the place at which the first
-   * period above 0 begins. */
+  /* In fixed-point units. period: the period's length; 0: none. side: the lowest place, 0 or more,
+   * at which a period begins. */
   MCOR_TYPE(long) period[3], side[3];
   MCOR_TYPE(int) cells[3];        /* extent of the level, in its cells */
   MCOR_TYPE(int) period_cells[3]; /* cells of a period */
@@ -32,7 +32,7 @@ typedef struct mcor_level
  * or cell (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
 #define MCOR_BRICK 4
 #define MCOR_BRICK_NODES 64
-/* Bricks beside a brick that share cells with it, see mcor_brick_neighbours. */
+/* A brick's 7 upper and 7 lower neighbours, see mcor_brick_neighbours. */
 #define MCOR_NEIGHBOURS 14
 
 /* A region is 2 x 2 x 2 bricks, a block 4 x 4 x 4 regions. */
@@ -80,8 +80,8 @@ typedef struct mcor_level
 #define MCOR_ABOVE 1
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* maybe both sides: evaluate */
-/* Bit that is added to the state of a leaf if the state leaves out nodes on the leaf's faces that
- * also belong to cells of other levels. */
+/* Bit that is added to the state of a leaf (an undivided brick) if the state does not hold for the
+ * nodes that cells of other levels have on the leaf's sides. */
 #define MCOR_OPEN_SIDES 4
 
 /* How many masks a brick has. The EDGE masks mark the brick's lattice edges with a vertex, see
@@ -113,11 +113,10 @@ typedef struct mcor_rung
   MCOR_TYPE(int) unused;
 } mcor_rung;
 
-/* A vertex's edge is four numbers: a node, and a last number that has the level above this many
- * bits. */
+/* A vertex's edge is x, y, z of a node, and a number: level << this | a flag and the axis. */
 #define MCOR_LEVEL_SHIFT 8
 
-/* Slots that hold the nodes of a leaf: 2^3 of its level, 3^3 of the next finer level. */
+/* Slots of the bricks that a leaf may need: 2^3 of its level, 3^3 of the next finer level. */
 #define MCOR_LEAF_SLOTS (8 + 27)
 
 /* How many uints hold the used cells around the edges of a brick: one mask, of two uints, for each
@@ -127,13 +126,13 @@ typedef struct mcor_rung
 /* Points that one work-item cuts into groups. */
 #define MCOR_GROUPED_POINTS_OF(lanes) ((lanes) == 1 ? 1 : 512)
 
-/* Greatest distance between nodes of a group of points along an axis, in cubes. */
+/* Greatest distance along each axis between the nodes of a group's points, in cubes. */
 #define MCOR_GROUP_EDGE 7
 
-/* The positions of a group's points, and of particles, are measured from one node. The points are
- * at most this far from that node: half a group, an offset, and 1. The larger a particle's support,
- * the more coarsely its position is rounded (mcor_stage.c): from any node up to this distance
- * outside of the support, the position is an exact real. */
+/* Points of a group, and particles, are measured from one node. Along each axis, the points are at
+ * most this far away: half a group, a point's offset (up to 2.5), and 1. Particles with long
+ * supports are rounded more coarsely (mcor_stage.c), so that their positions are exact reals if
+ * measured from any node up to this distance outside of their supports. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
 /* Groups of points close to each other that one work-item evaluates together. */

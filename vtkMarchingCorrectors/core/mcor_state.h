@@ -18,9 +18,8 @@
 #define MCOR_TREE_LEVEL_LIMIT 24
 
 /* [III-B] The virtual grid: world position = (origin + fixed / step) * edge, along each axis.
- * Lengths on the device are in cubes of 2^fix_bits fixed-point units. An edge is a cube long,
- * unless no cube divides all periods: a cube, as a length, is then a little longer than any
- * edge, see mcor_fit_steps. */
+ * Lengths on the device are in cubes of 2^fix_bits fixed-point units. Edges are a cube long, unless
+ * no cube divides all periods: `cube` is then a little longer than any edge, see mcor_fit_steps. */
 typedef struct mcor_lattice
 {
   double cube, edge[3];
@@ -159,7 +158,7 @@ typedef struct mcor_brick_set
   size_t count; /* number of bricks */
 } mcor_brick_set;
 
-/* Leaves of adaptive cubes, in blocks; see mcor_tree.h. */
+/* The leaves (undivided bricks) of adaptive cubes, in blocks; see mcor_tree.h. */
 typedef struct mcor_tree
 {
   const mcor_lattice* lattice;
@@ -190,7 +189,7 @@ typedef struct mcor_adaptive
   int count;                /* number of leaves that may have surface */
 } mcor_adaptive;
 
-/* Which cells pairs reach; see mcor_pair.c. */
+/* The cells that pairs of particles mark, and the cells reached from them; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
   /* Masks of cells: a ulong for each brick of all blocks, by the brick's number. marked: cells

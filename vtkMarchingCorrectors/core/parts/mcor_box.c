@@ -172,8 +172,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   }
 }
 
-/* Keeps the marched bricks' cells that are in the box or in `ring` cells around it. With adaptive
- * cubes, the ring is mcor_level_ring(ring) cells of each level wide. */
+/* Writes to `clipped` the cells that are in the box or in the ring, `ring` cells wide, around it.
+ * With adaptive cubes, the ring is mcor_level_ring(ring) cells of each level wide. */
 static mcor_status mcor_clip(
   mcor_context* context, int ring, const mcor_buffer* cells, mcor_buffer* clipped)
 {
@@ -336,7 +336,7 @@ bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach)
   return true;
 }
 
-/* Frees what the host keeps of a call's triangles. */
+/* Frees the flags that tell which of the surface's triangles this call owns. */
 void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);

@@ -3,8 +3,8 @@
 #ifndef mcor_box_h
 #define mcor_box_h
 
-/* The box of a call, for its phases, see mcor_box.c. If the call owns the whole lattice, these
- * functions do nothing. */
+/* The box of a call, for its phases, see mcor_box.c. If the call owns the whole lattice, no cell
+ * and no particle is left out. */
 
 #include "mcor_internal.h"
 
@@ -23,7 +23,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options);
 typedef struct mcor_reach_box
 {
   double low[3], high[3];     /* where the field is evaluated */
-  double support;             /* support radius / smoothing length */
+  double support;             /* support radius in cubes / smoothing length in unit L */
   double radius;              /* a smaller support radius counts as this; set later */
   double unit;                /* 2^-fix_bits */
   int top, ring;              /* top: highest level of adaptive cubes */
@@ -39,10 +39,10 @@ typedef struct mcor_images
   int first[3], last[3];
 } mcor_images;
 
-/* Returns the distance from the box up to which a particle is needed, from its kernel's length and
- * its level of adaptive cubes. */
+/* Returns how far from the box, in cubes, a particle is still needed. length: its smoothing length,
+ * unit L; level: its level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
-/* Finds the cells [first, last) whose particles need sums, for mcor_derive and mcor_widen. Returns
+/* Finds the cells [first, last) where particles need sums, for mcor_derive and mcor_widen. Returns
  * false if all particles need sums. Only one image of each particle counts: the image in the
  * period; on the period's sides, the image on the lower side or, if the box begins above the lower
  * side, the image on the upper side. */
@@ -51,14 +51,14 @@ bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* Finds where particles are needed. Returns false if they are needed everywhere. */
 bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach);
-/* Returns a position in the device's units. With a period, the position is rounded as on the
- * device, and moved into the first period. */
+/* Returns the position `fixed`, in fixed-point units. With a period, the position is rounded as on
+ * the device, and moved into the first period. */
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
-/* Lists the images that are needed; returns their number. */
+/* Finds the needed images of a particle; returns their number. at, support: in cubes. */
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
 
-/* Kernel arguments of MCOR_SIDES_PARAMS: six halves of cubes. */
+/* Kernel arguments of MCOR_SIDES_PARAMS: x0, y0, z0, x1, y1, z1, in halves of a cube. */
 #define MCOR_SIDES_ARGS(sides)                                                                     \
   MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
     MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
@@ -83,8 +83,8 @@ static inline int mcor_level_ring(int ring)
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
 }
 
-/* Extraction. Of the marched bricks' cells, keeps those in the box or its ring. Beyond the ring,
- * the device lacks particles, or has periodic images of particles. */
+/* Extraction. Removes from `cells`, masks of the marched bricks, the cells beyond the box and its
+ * ring. Beyond the ring, the device lacks particles, or has periodic images of particles. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* mcor_find_owned finds the owned cells among `cells`; mcor_count_cells counts the owned cells that
  * are also in `within`. */
@@ -93,17 +93,17 @@ mcor_status mcor_find_owned(
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
-/* mcor_triangle_cell.c. mcor_follows_cells: whether triangles keep their cells; mcor_find_counted:
- * which vertices this call counts (MCOR_OWN); mcor_count_owned_triangles counts the owned triangles
- * of [first, last). */
+/* mcor_triangle_cell.c. mcor_follows_cells: whether triangles keep the keys of their cells.
+ * mcor_find_counted finds which vertices this call counts (MCOR_OWN). mcor_count_owned_triangles
+ * counts the owned triangles among triangles [first, last). */
 bool mcor_follows_cells(const mcor_context* context);
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 
 /* Output: makes room for the keys and flags of `more` triangles of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
-/* Sets the key of a surface's triangle, made of the iso value's number and the triangle's cell or
- * square, and whether this call owns the triangle. */
+/* Stores a triangle's key (the iso value's number, and the key of the triangle's cell or of its
+ * cap's square), and whether this call owns the triangle. */
 void mcor_keep_cell(
   mcor_context* context, mcor_surface* surface, int64_t triangle, int number, uint64_t cell);
 mcor_status mcor_crop_surface(

@@ -31,10 +31,10 @@
 
 #define MCOR_FARTHEST 1e15 /* in cubes from the origin; nodes are whole numbers up to here */
 
-/* The longest reach, in periods; a longer one would need too many images. */
+/* The most periods over which a particle may reach; farther images would be too many. */
 #define MCOR_MOST_PERIODS 2
 
-/* Finds the fewest cubes along `axis`, from `least` to `most`, for which all periods are whole
+/* Returns the fewest cubes along `axis`, from `least` to `most`, for which all periods are whole
  * numbers of `unit` cubes; 0: none. */
 static int64_t mcor_count_cubes(
   const double length[3], int axis, int64_t least, int64_t most, int64_t unit)
@@ -238,7 +238,6 @@ static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice, in
   return good && cells < MCOR_KEY_LIMIT;
 }
 
-/* Lays the virtual grid over everything that the particles' supports reach. */
 mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
 {
   mcor_measure* m = &context->measure;

@@ -32,8 +32,8 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Decides which attributes to leave out, and lists components of the others. of_surface: only
- * varying components; else, for samples, all. not_finite: [attribute_count], as in mcor_surface. */
+/* Lists components of the attributes that are finite everywhere. of_surface: only components that
+ * vary; else, for samples, all. not_finite: [attribute_count], as in mcor_surface. */
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {

@@ -230,10 +230,10 @@ typedef struct mcor_cap_job
 typedef mcor_status (*mcor_clip_side)(
   void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
 typedef mcor_status (*mcor_add_clipped)(void* data, const mcor_cap_corner* corners, int count);
-/* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
- * inside, with the cuts before and behind it. A whole polygon begins with corner `first`. The
- * polygon with the most corners is a band between two iso lines that has all nodes of a square and
- * all vertices of both lines. */
+/* Adds what trimming leaves of a polygon: for each run of corners that remain, a polygon of the run
+ * and the cuts before and behind it. If all corners remain, the polygon begins with corner `first`.
+ * MCOR_POLYGON_MOST: the most corners, of a band between two iso lines that has all nodes of a
+ * square and all vertices of both lines. */
 #define MCOR_POLYGON_MOST 12
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);

@@ -407,7 +407,6 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* Appends the caps' vertices and triangles to the mesh. */
 static mcor_status mcor_append_caps(mcor_cap_job* job)
 {
   mcor_context* context = job->context;

@@ -57,7 +57,6 @@ static mcor_status mcor_limit_side(
   return MCOR_OK;
 }
 
-/* Adds one brick of a cluster. */
 static mcor_status mcor_add_cap_brick(
   mcor_context* context, mcor_cap_nodes* nodes, const int cluster[3], int bit)
 {
@@ -71,9 +70,9 @@ static mcor_status mcor_add_cap_brick(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two positions, in nodes, and marks them in `clusters`; bricks that are
- * marked already are left out. clusters: masks of bricks, by the key of each cluster's first brick.
- * ends: the first and the last brick of the last call; particles in a row often reach the same. */
+/* Adds the bricks between two positions, in nodes, unless they are marked in `clusters`, and marks
+ * them. clusters: masks of bricks, by the key of each cluster's first brick. ends: the first and
+ * last brick of the last call, because successive particles often reach the same bricks. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes,
   const double low[3], const double high[3], mcor_table* clusters, int ends[2][3])
 {
@@ -167,7 +166,7 @@ static int32_t mcor_cap_brick_at(const mcor_cap_nodes* nodes, const cl_int at[3]
   return number < 0 ? 0 : number;
 }
 
-/* Sorts and numbers the bricks, and finds the bricks beside each. */
+/* Sorts and numbers the bricks, and finds the bricks beside each brick. */
 static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes)
 {
   mcor_cap_brick* of = nodes->bricks.of;

@@ -68,16 +68,16 @@ static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
   return (const cl_int*)d->node + 4 * v;
 }
 
-/* Returns the surface's boundary flag of vertex v. A vertex is on the border that the node
- * threshold leaves if a cell around its edge is unused. */
+/* Returns the boundary flag of vertex v. On a lattice edge, the flag is 4 if a cell around the edge
+ * is unused, so that the vertex is on the border that the node threshold leaves; else 0. */
 static int mcor_flag_of(const mcor_download* d, int64_t v)
 {
   return v < d->context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
                                           : ((const uint8_t*)d->flag)[v];
 }
 
-/* Returns a length at vertex v. The argument counts cells of the vertex's level as if they were the
- * smallest cells, so it is multiplied by 2^level, see mcor_adaptive.h. */
+/* Returns a length in cells of vertex v's level, from the same length in the smallest cells:
+ * multiplies it by 2^level, see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
   const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
@@ -368,7 +368,7 @@ static mcor_status mcor_deliver_triangles(mcor_download* d)
   return MCOR_OK;
 }
 
-/* Appends `count` points and the triangles. */
+/* Appends the mesh's triangles, and its `count` output vertices with attributes, to the surface. */
 static mcor_status mcor_deliver(mcor_download* d, const mcor_input* input, int count)
 {
   mcor_context* context = d->context;

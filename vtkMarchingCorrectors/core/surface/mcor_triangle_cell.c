@@ -42,9 +42,9 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
  * rank that owns the first triangle that uses it. The triangles of a box and its ring have the same
  * order on all ranks. No rank owns cells in the ring beyond all ranks' boxes, where the whole
  * surface ends. Another rank owns each cap's square in the ring, so MCOR_CAP_SQUARE is the same bit
- * as MCOR_OTHERS_CELL. *owners, NULL before the call: [vertex_count], MCOR_OWN for vertices that
- * this call counts; still NULL if the call owns the whole lattice. The caller frees it, also after
- * a failure. */
+ * as MCOR_OTHERS_CELL. *owners must be NULL before. It becomes an array [vertex_count], MCOR_OWN
+ * for vertices that this call counts, or stays NULL if the call owns the whole lattice. The caller
+ * frees *owners, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
 {
   const mcor_mesh* mesh = &context->mesh;

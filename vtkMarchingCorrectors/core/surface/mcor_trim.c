@@ -3,12 +3,12 @@
 
 /* Trimming [III-D.3]: removes triangles on the lower side of a limit, and cuts triangles across it.
  *
- *   limit, at a vertex                            option                     default   not for
- *   the trimming weight                           vertex_threshold           0.5       MCOR_WEIGHT_SUM
- *   the boundary eigenvalue, in its place         boundary_detection         -         MCOR_WEIGHT_SUM
- *   the fluid's own weight                        none: 0.001, M'4: 0.05     always    all but MCOR_SHEPARD
- *   the solids' share of the weight, at most      wall_share                 measured; ignored solids
- *                                                                            of MCOR_WEIGHT_SUM: none
+ *   limit, at a vertex                   option              default          applies to
+ *   least trimming weight                vertex_threshold    0.5              not MCOR_WEIGHT_SUM
+ *   or least boundary eigenvalue         boundary_detection  off              not MCOR_WEIGHT_SUM
+ *   least weight of the fluid itself     -                   0.001, M'4 0.05  MCOR_SHEPARD
+ *   greatest share of solids in weight   wall_share          measured         unless solids ignored
+ * With MCOR_WEIGHT_SUM, the default of wall_share is 0, which sets no limit.
  *
  * Kernels: mcor_trim.cl decides and cuts; mcor_trim_solve.cl moves cuts to where both a limit and
  * the iso value are met; mcor_boundary.cl computes the eigenvalue.

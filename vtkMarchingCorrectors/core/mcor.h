@@ -775,8 +775,8 @@ extern "C"
   /* Returns a warning if single precision is too coarse for the points of a surface whose largest
    * coordinate, in magnitude, is `largest`; else no message. Both lengths have one unit. */
   mcor_message mcor_describe_single_points(double largest, double cube_size);
-/* If blocks are joined to one set of particles, the array of this name marks the wall particles:
- * those of blocks whose names tell of walls. */
+/* If blocks are joined to one set of particles, the array of this name marks the particles of
+ * blocks whose names tell of walls. */
 #define MCOR_WALL_BLOCK "WallBlock"
 
   /* The field at given points; free it with mcor_free_samples. */
@@ -862,16 +862,15 @@ extern "C"
   /* Shapes of sections, and the meaning of mcor_section.points. */
   typedef enum mcor_section_shape
   {
-    /* a corner, then the ends of the two edges that begin there; the normal is the cross product of
-     * the edges */
+    /* a corner, then the other ends of its two edges; the normal is the edges' cross product */
     MCOR_SECTION_RECTANGLE = 0,
     MCOR_SECTION_DISC = 1, /* the centre, and the normal, of any length */
     MCOR_SECTION_BOX =
       2, /* the lowest and the highest corner; the section is the box's sides, normals outwards */
-    /* three points each; the normal follows the right-hand rule, but points outwards if the
+    /* three points per triangle; the normal follows the right-hand rule, but points outwards if the
      * triangles form a closed surface */
     MCOR_SECTION_TRIANGLES = 3,
-    /* Two points each, in two dimensions only. The normal points to the right of the way from the
+    /* Two points per line, in two dimensions only. The normal is to the right of the way from the
      * first point to the second. The plane is seen with its first axis (x; y where x is constant)
      * to the right, and its second axis upwards. */
     MCOR_SECTION_LINES = 4,
@@ -912,9 +911,9 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. The tolerance of `area` is 2.5e-6 times
-   * the section's area; for volume_flux, times the greatest speed; for mass_flux, times greatest
-   * speed and density. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. The tolerance is 2.5e-6 times the area of
+   * the section; for volume_flux, times the greatest speed; for mass_flux, times the greatest speed
+   * and density. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);

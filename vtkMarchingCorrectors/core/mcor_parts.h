@@ -88,7 +88,7 @@ extern "C"
 
   /* Ranks: processes, or threads with a context each, that share an input. All of them call the
    * same function of this library with the same options, except for the box, and with input of
-   * the same form. Each gets the same sequence of callbacks. A callback that does not return 0,
+   * the same form. All get the same sequence of callbacks. A callback that does not return 0,
    * because another rank failed, ends the call with MCOR_CANCELLED. A rank whose own call fails
    * makes no further callbacks; the callbacks of the other ranks must then return nonzero. */
   struct mcor_ranks

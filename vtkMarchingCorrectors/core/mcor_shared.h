@@ -86,8 +86,8 @@ typedef struct mcor_level
 
 /* How many masks a brick has. The EDGE masks mark the brick's lattice edges with a vertex, see
  * mcor_march_count. DECISION masks 0 to 2, by axis of the normal, mark ambiguous faces whose lowest
- * node is in the brick and whose nodes above the iso value are joined. DECISION masks 3 and 4 mark
- * cells: those whose samples are all below the iso value, and those whose samples are all above. */
+ * node is in the brick and whose nodes above the iso value are joined. Mask 3 marks cells whose
+ * samples are all below the iso value; mask 4 marks cells whose samples are all above it. */
 #define MCOR_EDGE_MASKS 9
 #define MCOR_DECISION_MASKS 5
 

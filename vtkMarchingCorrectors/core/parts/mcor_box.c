@@ -10,9 +10,9 @@
  * leaves, and normals from triangles depend on it. The ring's triangles are removed from the
  * surface at the very end, see mcor_triangle_cell.c.
  *
- * Beyond the ring's nodes, sums lack particles and mean nothing. Bounds of cubes that extend beyond
- * the ring are too low, but true for the ring's nodes. Cubes and bricks beyond the ring are made
- * void, so that they are not examined.
+ * Beyond the ring's nodes, sums lack particles and mean nothing. The bounds found for cubes that
+ * extend beyond the ring are too low there, but hold at the ring's nodes. Cubes and bricks
+ * beyond the ring are made void, so that they are not examined.
  *
  * A probe whose search grid is not kept owns the cells around its points. */
 

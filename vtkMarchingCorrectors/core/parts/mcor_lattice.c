@@ -255,8 +255,8 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     --top;
   }
   lattice->levels = top + 1;
-  /* The lattice consists of whole bricks of all levels. Around them, space is left for finer
-   * bricks. */
+  /* With adaptive cubes, the lattice begins at a multiple of `unit`, a brick one level above the
+   * highest, with space for one more such brick. */
   const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)

@@ -86,8 +86,8 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   job->slices[slice] = found;
 }
 
-/* Finds the largest terms of all slices; or the sums, for which `measures` must have the largest
- * terms of all parts. context: NULL outside of a call. */
+/* Finds the largest terms of all slices. If `sums` is set, finds the sums of the terms; `measures`
+ * must then have the largest terms of all parts. context: NULL outside of a call. */
 static mcor_status mcor_measure_slices(mcor_context* context, const mcor_surface* surface,
   const int64_t* numbers, bool sums, mcor_measures* measures)
 {

@@ -77,7 +77,7 @@ mcor_status mcor_list_components(
   return status;
 }
 
-/* Copies the varying components `first` and following, MCOR_ATTRIBUTE_LIMIT at most, to the
+/* Copies the listed components from number `first` on, at most MCOR_ATTRIBUTE_LIMIT of them, to the
  * device. */
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
 {

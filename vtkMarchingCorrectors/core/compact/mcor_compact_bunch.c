@@ -107,8 +107,9 @@ static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
   return v;
 }
 
-/* Joins vertices of one node that share an edge. If another thread has joined `high` meanwhile, its
- * new first vertex is joined. */
+/* Joins vertices of one node that share an edge: of their first vertices, the higher one leads to
+ * the lower one. If another thread has joined `high` meanwhile, continues with its new first
+ * vertex. */
 static void mcor_join_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -7,9 +7,10 @@
  * diagonal, and four triangles would then meet in it. Some rows need such diagonals; see
  * mcor_allow_diagonals.
  *
- * The corners of an ambiguous face are above and below in turn. Either the corners above are cut
- * off, or they are joined and the corners below are cut off. Each of the 256 cases has a row for
- * each combination of these decisions. Two loops around the same region may become a tunnel. */
+ * The corners of an ambiguous face are above and below the iso value in turn. Either the corners
+ * above are cut off, or they are joined and the corners below are cut off. Each of the 256 cases
+ * has a row for each combination of these decisions. Two loops around the same region may become a
+ * tunnel. */
 
 #include "mcor_internal.h"
 
@@ -134,7 +135,8 @@ static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
 /* ---- Tunnels ---- */
 
 /* Gives corners the same number in `region` if they are on the same side of the iso value, and are
- * connected by edges of the cell or across ambiguous faces, see `joined`. */
+ * connected by edges of the cell or across ambiguous faces: a joined face connects its corners
+ * above the iso value, any other ambiguous face its corners below. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])
 {
   int pairs[24][2], count = 0;

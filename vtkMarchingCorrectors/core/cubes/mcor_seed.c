@@ -57,10 +57,10 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Tests regions of 2^3 bricks. Requests the bricks that stay uncertain, whose cells are the seeds,
- * and lists their regions. Gives slots to these bricks, and to all bricks that are known from
- * earlier iso values. Finds states of the uncertain bricks, and evaluates most of these bricks. In
- * a plane, skips this last step, because bounds cost more than a brick's few nodes. */
+/* Tests regions of 2^3 bricks. Requests the bricks that the surface may reach, whose cells are the
+ * seeds, and lists their regions. Gives slots to these bricks, and to all bricks that are known
+ * from earlier iso values. Then tests the requested bricks one by one, and evaluates most of them.
+ * In a plane, skips this last step, because bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -70,7 +70,7 @@ typedef struct mcor_level
 
 /* SIDE_PARTICLES: one flag tells on which sides of the iso value so many successive particles are,
  * see mcor_seed_side_flags. PAIR_VECTORS: one work-item finds the pairs of particles in so many
- * vectors. There are few, because a particle may have many pairs. */
+ * vectors. The number is small, because a particle may have many pairs. */
 #define MCOR_SIDE_PARTICLES 16
 #define MCOR_PAIR_VECTORS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 

@@ -175,8 +175,8 @@ static mcor_status mcor_fit_period(
 /* The least length of the longest edge is 1 - 1 / MCOR_STEP_RANGE cubes. */
 #define MCOR_STEP_RANGE 16
 
-/* Chooses the edges in fixed-point units. Positions count in units along each axis, so distances
- * are right if the edges have the same ratios as their numbers of units. For the longest edge,
+/* Chooses the edges in fixed-point units. Positions are numbers of units, so distances are
+ * right if the edges have the same ratios as their numbers of units. For the longest edge,
  * tries the greatest 1 / MCOR_STEP_RANGE of all possible numbers. Takes the number with the best
  * ratios, which are right to about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)

@@ -108,7 +108,7 @@ extern "C"
 
   /* Does what mcor_create_context does, for process or thread number `place`, from 0, of `count`
    * that run side by side on a machine. Unless a number names the device, the processes take turns
-   * among all devices of the same platform and kind. If processes use the same CPU device, each gets
+   * among all devices of the same platform and kind. If processes use the same CPU device, each has
    * some of the processors. Results do not depend on which device or processors a process gets. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);

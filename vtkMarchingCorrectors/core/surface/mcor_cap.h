@@ -98,8 +98,8 @@ typedef struct mcor_cap_brick
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
-  /* Masks, by lowest node. used: the used cells. joined: the side's ambiguous faces whose nodes above
-   * the iso value are joined. */
+  /* Masks, by lowest node. used: the used cells. joined: the side's ambiguous faces whose nodes
+   * above the iso value are joined. */
   cl_ulong used, joined;
 } mcor_cap_brick;
 

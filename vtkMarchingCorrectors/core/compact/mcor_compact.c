@@ -61,10 +61,17 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   mcor_context* context = bunches->context;
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  mcor_point* points = realloc(bunches->points, n * sizeof *points);
-  MCOR_TRY(mcor_allocated(context, points));
-  bunches->points = points;
-  mcor_use_large_pages(points, n * sizeof *points);
+  if (n > bunches->point_room)
+  {
+    /* Makes room for the merged vertices, too, so that they need no further copy; they are at most
+     * half as many as the vertices. */
+    bunches->point_room = n + n / 2;
+    const size_t bytes = bunches->point_room * sizeof *bunches->points;
+    mcor_point* points = realloc(bunches->points, bytes);
+    MCOR_TRY(mcor_allocated(context, points));
+    bunches->points = points;
+    mcor_use_large_pages(points, bytes);
+  }
   const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &bunches->node },
     { &mesh->offset, 4 * n * real, &bunches->offset },
     { &mesh->linear, n * real, &bunches->linear },

@@ -82,7 +82,8 @@ typedef struct mcor_bunches
   /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the bunch to a
    * corner of the list's previous triangle; -1: there is none. */
   int32_t* before;
-  mcor_point* points; /* [point_count], of the mesh's vertices */
+  mcor_point* points; /* [point_room], of which point_count are the mesh's vertices */
+  size_t point_room;
   int point_count;
   MCOR_LIST(mcor_start) starts;
   /* What loops over vertices read or write: views of the mesh's buffers. While vertices are

@@ -204,7 +204,7 @@ def fail(error):
 
 
 def to_times(text):
-    """Reads times, and ranges of times, BEGIN:END:STEP, as numbers of 15 digits: 3 x 0.05 is 0.15."""
+    """Returns the sorted times of a list of times and ranges BEGIN:END:STEP. Times of a range have 15 digits, so that 3 x 0.05 gives 0.15."""
     found = set()
     for part in text.split(","):
         begin, *ends = [float(each) for each in part.split(":")]

@@ -73,8 +73,8 @@ class Arguments(unittest.TestCase):
 
 class Steps(ScratchTest):
     def run_steps(self, commands, interrupt=False):
-        """Runs commands in bash with the functions of .ci/steps.sh. interrupt: as soon as a step has written to the pipe, sends Ctrl-C to
-        all processes of the terminal; the process that reads the pipe goes on."""
+        """Runs commands in bash with the functions of .ci/steps.sh, and returns the exit status and the output. interrupt: sends SIGINT to
+        bash's process group, as Ctrl-C does, as soon as a step has written to the pipe $PIPE."""
         pipe = os.path.join(SCRATCH, "pipe")
         os.mkfifo(pipe)
         with tempfile.TemporaryFile("w+") as output, subprocess.Popen(

@@ -74,8 +74,8 @@ static void check_images(
   check_same(name, &surface, &expected);
 }
 
-/* Pairs are found in one place alone, away from the sides. From the cells found there, the surface must grow
- * through the period's sides until it is whole. oracle_period tests complete seeds. */
+/* With MCOR_PAIRS, the surface starts between particles on different sides of the iso value. Here they are in one place
+ * alone, away from the period's sides. The surface must grow from there through the sides until it is whole. */
 static void pairs_grow_around(void** state)
 {
   const double iso = 0.2, along[6] = { 0, 12, 0, 8, 0, 0 };

@@ -70,8 +70,8 @@ static void test_triangle_normals(void** state)
     !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle);
 }
 
-/* Compares attributes with means in double precision: a constant, a linear function, a vector, more components than one
- * round sums, and a single-precision array. */
+/* Compares attributes with the oracle's weighted means: a constant, 9 components (a kernel sums 4 at a time), a linear
+ * function in single precision, and a vector. */
 static void check_attributes(mcor_context* context, int solids)
 {
   CORE_SET set = core_make_block(10, 0.2, 3, core_ball);
@@ -104,11 +104,14 @@ static void check_attributes(mcor_context* context, int solids)
   CORE_FIELD field = oracle_make_field(&fluid, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   CORE_FREED double* component = oracle_allocate(n, sizeof(double));
   assert_int_equal(surface.attribute_count, 4);
-  for (int c = -2; c < 9; ++c)
+  for (int c = -2; c < 12; ++c)
   {
     for (int64_t i = 0; i < n; ++i)
     {
-      component[i] = c == -2 ? constant[i] : c == -1 ? (double)single[i] : many[9 * i + c];
+      component[i] = c == -2 ? constant[i]
+        : c == -1            ? (double)single[i]
+        : c < 9              ? many[9 * i + c]
+                             : set.position[3 * i + c - 9];
     }
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
@@ -116,7 +119,8 @@ static void check_attributes(mcor_context* context, int solids)
       oracle_evaluate(&field, component, surface.points + 3 * i, &sample);
       const double value = c == -2 ? surface.attributes[0][i]
         : c == -1                  ? surface.attributes[2][i]
-                                   : surface.attributes[1][9 * i + c];
+        : c < 9                    ? surface.attributes[1][9 * i + c]
+                                   : surface.attributes[3][3 * i + c - 9];
       CORE_CHECK(
         fabs(value - sample.value) < 1e-6 * (10 + fabs(sample.value)), c, value, sample.value);
       CORE_CHECK(c != -2 || value == 1234.5, value);

@@ -372,45 +372,46 @@ extern "C"
      * mcor_probe and mcor_derive read this, too; their points may lie anywhere. */
     double periodic[6];
     /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are
-     * above the iso value; MCOR_CAP_BOX: also at the sides of the box's cells (with ranks: of
-     * whole_box). These caps share the points of the surface's border; their other points are
-     * nodes, with normals pointing out of the period, boundary flag 8, and a meaningless residual.
+     * above the iso value; with a box, at those sides of its cells that lie on a periodic side.
+     * MCOR_CAP_BOX: triangles also close the other sides of the box's cells (with ranks: of
+     * whole_box). Caps share the points of the surface's border; their other points are nodes, with
+     * normals pointing out of the period or box, boundary flag 8, and a meaningless residual.
      * Trimming also cuts caps. The trimmed border stays open, and so does the border at solids (see
-     * wall_share). With caps, all cubes have the smallest size. With a box, MCOR_CAP_PERIOD closes
-     * the sides of its cells that lie on a periodic side. A box that no particle reaches gets no
-     * caps, even where the iso value of a sum is 0. Cannot be combined with MCOR_PAIRS. In two
-     * dimensions, straight lines along these sides close the contour, and end exactly where
-     * trimming cuts them; lines that end at walls stay open. Cannot be combined with `filled`
-     * either. */
+     * wall_share). With caps, all cubes have the smallest size. A box that no particle reaches gets
+     * no caps, even if the field is a sum and the iso value is 0. In two dimensions, straight lines
+     * along these sides close the contour, and end exactly where trimming cuts them; lines that end
+     * at walls stay open. Caps cannot be combined with MCOR_PAIRS or with `filled`. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
      * particles. The input then needs only the particles whose supports miss the box by no more
      * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
      * supports of these particles. The surface has the same bits as with all particles. Borrowed
-     * until return. mcor_probe and mcor_derive take the result of mcor_measure_probe_globals in its
-     * place. What they compute is valid in the box and on its sides; elsewhere it is meaningless,
-     * or 0 for particles two cubes or more away from the box. */
+     * until return. mcor_probe and mcor_derive take the result of mcor_measure_probe_globals
+     * instead. Their results are valid in the box and on its sides; elsewhere, they are
+     * meaningless, or 0 for particles two cubes or more away from the box. */
     const mcor_globals* globals;
 
     /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals
-     * measure over the inputs of all ranks; each particle must be in exactly one of them. (A rank
-     * without particles has count 0, and data that are not NULL where the other ranks have data.)
-     * The result has the same bits as for all particles in one input, except for
+     * measure over the inputs of all ranks; each particle must be in exactly one of the inputs. (A
+     * rank without particles has count 0, and data that are not NULL where the other ranks have
+     * data.) The result has the same bits as for all particles in one input, except for
      * attribute_not_finite, which is the least index that such a particle has on its own rank.
-     * mcor_extract needs these globals; each cell must be in the box of exactly one rank. Functions
-     * that do not mention ranks do not read them. Borrowed until return. */
+     * mcor_extract needs these globals; each cell must be in the box of exactly one rank. A
+     * function whose comment does not mention ranks ignores this member. Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* Arrays that the surface carries besides points and triangles. */
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
-    /* What progress reports while a driver builds programs, which may take a minute. If the
-     * remaining time is known, ", about 5 s to come" follows. Programs of the built-in device are
-     * compiled beforehand. */
+    /* The phase text that `progress` gets while a driver builds programs, which may take a minute.
+     * If the remaining time is known, ", about 5 s to come" follows. Programs of the built-in
+     * device are compiled beforehand. */
 #define MCOR_BUILDING "building the OpenCL program (first time only)"
-    /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
+    /* Called between device launches. fraction: how much of the work is done, 0 to 1; phase: a text
+     * that tells what is being done. If the return value is nonzero, the call stops with
+     * MCOR_CANCELLED. May be NULL. */
     int (*progress)(void* user, double fraction, const char* phase);
     void* progress_user;
   } mcor_options;
@@ -434,26 +435,28 @@ extern "C"
     double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
     /* far_particles: how many particles are left out because they are too far away from all others
-     * for the virtual grid (at most 0.1 % of all, or 8 if that is more); far_first, far_place:
-     * number and position of the first far particle. */
+     * for the virtual grid (at most 0.1 % of all, or 8 if that is more). far_first, far_place:
+     * index and position of the first particle that is left out. */
     int64_t far_particles, far_first;
     double far_place[3];
-    /* Fluid particles whose volume x W(0), the weight sum at a particle by itself, is below the
-     * lowest iso value: alone, such a particle has no free surface. 0 if volumes are computed, or
-     * if a scalar is contoured. */
+    /* How many fluid particles would have no free surface if they were alone: a particle's volume
+     * times W(0), which is its own part of the weight sum, is below the lowest iso value. 0 if
+     * volumes are computed, or if a scalar is contoured. */
     int64_t lone_particles;
-    /* On the device, periodic images included; with a box, only particles that the box needs. */
+    /* The number of particles on the device. Periodic images count, too. With a box, the device has
+     * only the particles that the box needs. */
     int64_t particles_in_reach;
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
-    /* Medians over a sample of the fluid particles: smoothing length; number of particles within
-     * the unscaled support radius, including the particle itself and solids; distance of the
-     * nearest other particle (0: none); share of the support that the particles in it fill if all
-     * are as large as the particle itself (0 if volumes are computed). */
+    /* Medians over a sample of the fluid particles. smoothing_length_median: unit L, unscaled.
+     * neighbours_median: how many particles are within the unscaled support radius, including the
+     * particle itself and solids. spacing_median: distance of the nearest other particle; 0: there
+     * is none. filled_median: the share of the support that these neighbours fill if all are as
+     * large as the particle itself; 0 if volumes are computed. */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles, or 0 */
-    /* Fluid particles that are inside by mcor_widen's weight sum with their own smoothing lengths,
-     * but outside by the sum with their factors. In a box, mcor_widen also counts particles next to
-     * the box. */
+    /* How many fluid particles mcor_widen puts outside of the surface: their weight sum is at least
+     * the iso value with their own smoothing lengths, but below it if these lengths are multiplied
+     * by the widening factors. In a box, mcor_widen also counts particles next to the box. */
     int64_t widening_outside;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
@@ -469,11 +472,12 @@ extern "C"
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / edge */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
-    /* Complete seeds: with uniform cubes, the cells that bounds of the field, each for 8 x 8 x 8
-     * nodes, do not exclude; with adaptive cubes, the cells of leaves through which the surface
-     * passes. Pair seeds: the cells between the two particles of each pair.
-     * seed_cells_not_intersected: how many of these cells the surface does not use. These counts
-     * and most of the following ones are summed over iso values. */
+    /* seed_cells: the cells where the search for the surface begins. With complete seeds and
+     * uniform cubes, these are the cells that bounds of the field, each for 8 x 8 x 8 nodes, do not
+     * exclude. With complete seeds and adaptive cubes: the cells of leaves (undivided bricks of
+     * cubes) through which the surface passes. With pair seeds: the cells between the two particles
+     * of each pair. seed_cells_not_intersected: how many of the seed cells the surface does not
+     * use. These counts and most of the following ones are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     /* Not summed over iso values: bricks that exist after the last iso value, and nodes that then
      * have values, some of them from earlier calls. */
@@ -481,31 +485,36 @@ extern "C"
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
-    /* The returned surface. is_closed: each edge has triangles on both sides; in two dimensions,
-     * all lines are closed. area: unit L^2; in two dimensions the filled area, or the area that the
-     * lines enclose, 0 if they are not closed. volume: unit L^3, what a closed surface encloses,
-     * less cavities (negative where values grow outwards), else 0. length: of the lines, unit L. */
+    /* Measures of the returned surface. is_closed: nonzero if each edge has triangles on both
+     * sides; in two dimensions, if all lines are closed. area: unit L^2; in two dimensions the area
+     * of the filled region, or the area that the lines enclose, 0 if they are not closed. volume:
+     * unit L^3, what a closed surface encloses, without cavities; negative if values grow outwards;
+     * 0 if the surface is not closed. length: of the lines, unit L. */
     int is_closed;
     double area, volume, length;
     int64_t march_rounds;
-    /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
+    /* With adaptive cubes: the number of used cells of each level, and the number of triangles,
+     * before trimming, in the cells of each level. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
-    /* Polygons of the surface that lie in one face of a cell beside finer cells: there the cell
-     * cuts off a part of the surface that the finer cells resolve. */
+    /* How many polygons of the surface lie in one face of a cell, beside finer cells. At such a
+     * face, the cell cuts off a part of the surface that the finer cells resolve. */
     int64_t flat_loops;
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
-    /* With MCOR_TOPOLOGY_FIELD: ambiguous faces; how many of them join the two nodes above the iso
-     * value, which MCOR_TOPOLOGY_TABLE keeps apart; cells in which a tunnel may join two polygons
-     * of the surface; cells in which a tunnel does. */
+    /* With MCOR_TOPOLOGY_FIELD. joined_faces: ambiguous faces on which the field connects the two
+     * nodes above the iso value (MCOR_TOPOLOGY_TABLE keeps them apart on all ambiguous faces).
+     * ambiguous_cells: cells in which a tunnel may join two polygons of the surface. tunnels: cells
+     * in which a tunnel joins them. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
-    /* Distance between the linear and the corrected vertex, unit L, as in the paper's Table V. */
+    /* Mean, greatest value and standard deviation of the distance between a linearly interpolated
+     * vertex and the corrected vertex, unit L, as in the paper's Table V. */
     double correction_mean, correction_max, correction_deviation;
     int64_t correction_count; /* vertices in the mean: all but trim vertices and points of caps */
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    /* Greatest |f - iso|, in the scalar's unit: as evaluated on the device, plus the most that the
-     * device's rounding of positions and sums may add. Leaves out caps and trim_vertices_linear. */
+    /* Greatest |f - iso| at a vertex, in the scalar's unit, without caps and trim_vertices_linear.
+     * |f - iso| is as evaluated on the device, plus the most that the device's rounding of
+     * positions and sums may add. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices, trim_vertices_linear; /* linear: at the linear cut, off the iso value */
@@ -513,17 +522,20 @@ extern "C"
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* The key of a point: the number of the iso value and the kind of the point, then its place. The
-   * place of a cut is the two points between which it lies; of a cap's point, the square; of any
-   * other point, its lattice edge. A merged point has the key of the first of the points that it
-   * replaces. The points of a surface have different keys, in ascending lexicographic order. In the
-   * surface of a box, points have the same keys as in the whole surface. */
+  /* The key of a point is three numbers. The first tells the number of the iso value and the kind
+   * of the point; the other two tell the place: for a point on a lattice edge, this edge; for a
+   * cut, which trimming makes, the lattice edges of the two points between which the cut lies; for
+   * a point that only a cap has, a square of the cap, and a number. A merged point (see
+   * mcor_options.compact) has the key of the first of the points that it replaces. The points of a
+   * surface have different keys, in ascending lexicographic order. In the surface of a box, points
+   * have the same keys as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
-  /* The key of a triangle: the number of the iso value, then its cell or the square of a cap.
-   * Triangles are in the order of their keys; triangles of one cell have the same key. In the
-   * surface of a box, triangles have the same keys as in the whole surface. Each cell is in one
-   * box, so a stable sort by key of the triangles of all boxes gives the whole surface's order. */
+  /* The key of a triangle is two numbers: the number of the iso value, then the key of the cell, or
+   * of the cap's square, in which the triangle lies. Triangles are in the order of their keys;
+   * triangles of one cell have the same key. In the surface of a box, triangles have the same keys
+   * as in the whole surface. Each cell is in one box, so a stable sort by key of the triangles of
+   * all boxes gives the whole surface's order. */
 #define MCOR_TRIANGLE_KEY 2
 
   /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to
@@ -543,9 +555,9 @@ extern "C"
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count] = line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
-    /* [triangle_count]; NULL unless filled: the iso value at which the triangle's band begins; the
-     * last band has no upper end. At nodes inside the region, iso_value is the value at which the
-     * node's band begins, and residual is the field minus iso_value. */
+    /* [triangle_count]; NULL unless `filled`. The iso value at which the band of each triangle
+     * begins; the last band has no upper end. At nodes inside the region, iso_value is the value at
+     * which the node's band begins, and residual is the field minus iso_value. */
     double* band_value;
     /* Optional arrays, see mcor_output; NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
@@ -568,8 +580,9 @@ extern "C"
      * meaningless. */
     double *mean_curvature, *gauss_curvature;
     double** attributes;       /* [attribute_count] -> [point_count][components] */
-    /* [attribute_count]: -1; or the first fluid particle at which the attribute is NaN or infinite.
-     * Such an attribute is left out; its entry in `attributes` is NULL. */
+    /* [attribute_count]; the index of the first fluid particle at which the attribute is NaN or
+     * infinite; -1: there is none. An attribute with such a particle is left out; its entry in
+     * `attributes` is NULL. */
     int64_t* attribute_not_finite;
     int attribute_count;
     mcor_statistics statistics;
@@ -578,9 +591,10 @@ extern "C"
   typedef struct mcor_context mcor_context;
 
   /* device: a number as listed by mcor_list_devices, or part of the name of a device or platform.
-   * NULL or "": what MCOR_DEVICE in the environment says in this way, else the default (the
-   * built-in device if it can do the run, else a GPU, else another). On failure *context is still a
-   * context, whose mcor_last_error says why (NULL only if host memory ran out). */
+   * NULL or "": the environment variable MCOR_DEVICE names the device in this way; if it is not
+   * set, the default is taken (the built-in device if it can do the run, else a GPU, else another).
+   * On failure *context is still a context, whose mcor_last_error says why (NULL only if host
+   * memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
@@ -589,17 +603,18 @@ extern "C"
    * out. Free it with free(). */
   mcor_status mcor_list_devices(char** text);
 
-  /* Says in one sentence, with C's words in its slots, why the last failed call on this context
-   * failed; "" if none failed. Valid until the next call on the context. */
+  /* Returns a sentence that tells why the last failed call on this context failed; "" if none
+   * failed. Slots for the names of options, such as {cube_size}, are filled with the names in C.
+   * Valid until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
-  /* Returns the sentence of mcor_last_error with its code, but with its slots not filled. Free the
-   * message with mcor_free_message. */
+  /* Returns the sentence of mcor_last_error and its code; slots such as {cube_size} are not filled.
+   * Free the message with mcor_free_message. */
   mcor_message mcor_last_message(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
 
-  /* Return the kernel with a short name ("cubic", "wendland", ...), and the short name of a kernel;
-   * -1 or NULL: none. */
+  /* mcor_find_sph_kernel returns the kernel with a short name ("cubic", "wendland", ...); -1: there
+   * is none. mcor_sph_kernel_name returns the short name of a kernel; NULL: there is none. */
   int mcor_find_sph_kernel(const char* name);
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
@@ -642,16 +657,16 @@ extern "C"
     int64_t count;
   } mcor_field_data;
 
-  /* Finds the period that field data give: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box
-   * with a periodic boundaryType (SPH-EXA). Case, blanks, "_" and "-" of names do not matter.
-   * Returns how many numbers `period` has: 6 bounds, as in mcor_options.periodic; 3 lengths, see
-   * mcor_place_period; 0 if no array gives a period. which: becomes the index of the array, or
-   * -1; may be NULL. */
+  /* Finds the period in an array of field data: PeriodicBounds, BoxSize (GADGET, SWIFT), or box if
+   * an array boundaryType marks axes as periodic (SPH-EXA). Case, blanks, "_" and "-" of names do
+   * not matter. Returns how many numbers tell the period: 6 bounds, as in mcor_options.periodic; 3
+   * lengths, see mcor_place_period; 0 if no array gives a period. which: becomes the index of the
+   * array, or -1; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 
-  /* Finds the bounds of a period of known lengths. Along each axis the period begins at 0, or is
-   * centred at 0, if it then contains all particles; otherwise it begins at the lowest particle.
-   * extent: x0, x1, ... of the particles. */
+  /* Finds the bounds of a period of known lengths. Along each axis, the period begins at 0 if it
+   * then contains all particles; else it is centred at 0 if it then contains them; else it begins
+   * at the lowest particle. extent: bounds of the particles' positions, x0, x1, y0, ... */
   void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
 
   /* Whether mcor_find_period reads arrays of this name. */
@@ -695,11 +710,12 @@ extern "C"
    * all ranks unless `ranks` is NULL. Reads only the positions and the solids. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
-  /* Returns whether the free surface is what users want to see first, over all ranks unless `ranks`
-   * is NULL: 0 for a gas that fills its bounds (the smoothing lengths of its particles reach 98 %
-   * of them); 1 if there are solids, if the fluid leaves room within its bounds, or if it is a
-   * liquid: it has one smoothing length, and densities that differ by no more than a factor of 2.
-   * Reads positions, solids, smoothing lengths and densities, of valid form. */
+  /* Returns whether the free surface is what users want to see first. Returns 0 for a gas that
+   * fills its bounds: the smoothing lengths of its particles reach 98 % of them. Returns 1 if there
+   * are solids or no fluid, if the fluid leaves room within its bounds, or if it is a liquid: it
+   * has one smoothing length, and densities that differ by no more than a factor of 2. Reads
+   * positions, solids, smoothing lengths and densities, of valid form; of all ranks unless `ranks`
+   * is NULL. */
   int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);
 
   /* The usual `eta` of mcor_find_smoothing_lengths, which sets the number of neighbours. */
@@ -730,11 +746,11 @@ extern "C"
    * estimate_smoothing_length, infinite without fluid. */
   double mcor_least_smoothing_length(const mcor_input* input);
 
-  /* Returns about how many cubes (squares in a plane) of the virtual grid the fluid fills, in the
-   * box if there is one: a particle fills (h / 1.3)^3. 0 without fluid, and if the smoothing length
-   * is to be estimated but options.cube_size is given, so that the ratio of the two is not known.
-   * least: mcor_least_smoothing_length, over all ranks that share the particles; the results of
-   * ranks add up. */
+  /* Returns about how many cubes (in a plane: squares) of the virtual grid the fluid fills, in the
+   * box if there is one. A particle fills (h / 1.3)^3, in a plane (h / 1.3)^2. Returns 0 without
+   * fluid, or if the smoothing length is to be estimated but options.cube_size is given, because
+   * the ratio of the two is then not known. least: mcor_least_smoothing_length, over all ranks that
+   * share the particles; the results of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
   /* Returns a warning that a run of `cells` cells may take long; no message if it will not. */
@@ -742,8 +758,8 @@ extern "C"
 
   /* Return texts for panels, with numbers of six digits. The first two tell which smoothing length
    * and volume are in use: "0.02 to 0.045 (array h)", "array Mass / array Density". The third tells
-   * area and volume, or length and area; "" if there is no surface. Free them with free(). NULL if
-   * memory ran out. */
+   * area and volume or, in two dimensions, length and area; "" if there is no surface. Free them
+   * with free(). NULL if memory ran out. */
   char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
   char* mcor_describe_volume(const mcor_input* input);
   char* mcor_describe_measures(const mcor_statistics* statistics);
@@ -765,10 +781,11 @@ extern "C"
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* Returns the warning with its numbers. Returns no message if there is nothing to warn of, if
-   * another warning already tells the cause, or with options.globals, because the input then has
-   * only some of the particles. Pass the input, options and surface of mcor_extract. The last three
-   * warnings hold for any call, and read only the statistics of the surface. */
+  /* Returns the text of the warning, with figures. Returns no message if there is nothing to warn
+   * of, if another warning already tells the cause, or with options.globals, because the input then
+   * has only some of the particles. Pass the input, options and surface of mcor_extract. You may
+   * also ask for the last three warnings after other calls: of the surface, they need only
+   * `statistics`. */
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
@@ -787,8 +804,8 @@ extern "C"
     double* weight_gradient; /* [count][3], unit 1 / L; NULL without MCOR_OUT_GRADIENTS */
     uint8_t* valid; /* [count], 1 where the weight sum is above 1e-30 and not below
                      * options.node_threshold */
-    /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard
-     * mean), and the gradient of this field. 0 where not valid. */
+    /* For each attribute of the input: the field at the points (MCOR_SUM: the sum; else the Shepard
+     * mean) and the gradient of this field. Both are 0 at points that are not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
     double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
                                     * without MCOR_OUT_GRADIENTS */
@@ -821,7 +838,7 @@ extern "C"
     MCOR_GAUGE_STATE_COUNT
   } mcor_gauge_state;
 
-  /* The reading of one line; lengths are measured from its beginning, unit L. */
+  /* The reading of one line. Lengths are measured from the line's beginning, unit L. */
   typedef struct mcor_gauge_reading
   {
     mcor_gauge_state state;
@@ -844,16 +861,16 @@ extern "C"
     mcor_statistics statistics;
   } mcor_gauges;
 
-  /* Finds where lines cross the free surface, that is, where the weight sum equals the level, which
-   * is the iso value (above 0; 0.5 if there is none). There is fluid where the sum is at least the
-   * level. Solids count in the sum, unless they are ignored, and the fluid ends where the solids'
-   * share of the sum exceeds wall_share (0.5 unless it is given; 0: solids play no part). Each line
-   * is sampled at a quarter of the smallest (scaled) smoothing length, or more finely where
-   * neighbouring samples show that an extremum may cross the level; then crossings are solved for.
-   * lines: [count]. The options of mcor_probe apply, except field; iso_values and wall_share apply,
-   * too. Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM, level_limit
-   * 0 and MCOR_WALL_SHARE_MEASURED, unless a share is given) and the same lines; each rank gets all
-   * readings. *gauges is overwritten. */
+  /* Finds where lines cross the free surface. On the free surface, the weight sum equals the level:
+   * the iso value, which must be above 0, or 0.5 if there is no iso value. There is fluid where the
+   * sum is at least the level. Solids count in the sum, unless they are ignored, and the fluid ends
+   * where the solids' share of the sum exceeds wall_share (0.5 unless it is given; 0: solids play
+   * no part). Each line is sampled at a quarter of the smallest (scaled) smoothing length, or more
+   * finely where neighbouring samples show that an extremum may cross the level; then crossings are
+   * solved for. lines: [count]. The options of mcor_probe apply, except field; iso_values and
+   * wall_share apply, too. Ranks must have boxes, globals (of mcor_measure_globals with
+   * MCOR_WEIGHT_SUM, level_limit 0 and MCOR_WALL_SHARE_MEASURED, unless a share is given) and the
+   * same lines; each rank gets all readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);
@@ -891,7 +908,7 @@ extern "C"
   } mcor_section;
 
   /* Flow through the part of a section that is in fluid. A is the area of this part, n its normal.
-   * v and rho are the Shepard means of velocity and density at its points. */
+   * v and rho are the Shepard means of velocity and density at the points of this part. */
   typedef struct mcor_flux_reading
   {
     int outside;        /* 1: no particle's support reaches the section */
@@ -911,9 +928,10 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. The tolerance is 2.5e-6 times the area of
-   * the section; for volume_flux, times the greatest speed; for mass_flux, times the greatest speed
-   * and density. Options, globals and ranks are as for mcor_gauge. *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. The tolerance of `area` is 2.5e-6 times
+   * the area of the section. Times the greatest speed, this is the tolerance of volume_flux; times
+   * the greatest speed and density, of mass_flux. Options, globals and ranks are as for mcor_gauge.
+   * *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -924,11 +942,12 @@ extern "C"
     /* Direction of the line of sight; its length and sign do not matter. All 0: the constant
      * axis of a plane, else z. */
     double direction[3];
-    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, or along axes without a period, all that
-     * particles reach. Sides may be infinite. The image shows the box, seen along the line of
-     * sight. If this line is along x, y or z, a particle counts if its kernel reaches the image and
-     * its position along this axis is in the box. For another line, it counts if its position is in
-     * the box. A particle that counts does so with its whole kernel. */
+    /* x0, x1, y0, y1, z0, z1, unit L. The image shows this box, seen along the line of sight. Sides
+     * may be infinite. All 0: the box is the period; along axes without a period, it contains all
+     * that particles reach. If the line of sight is along x, y or z, a particle counts if its
+     * kernel reaches the image and its position along this axis is in the box. For another line of
+     * sight, a particle counts if its position is in the box. A particle that counts does so with
+     * its whole kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
     /* [count], 1 component. The image shows means, sum V B A F / sum V B F. V: volumes; B: weights;
@@ -988,8 +1007,8 @@ extern "C"
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);
-  /* Adds the seconds that mcor_widen took to the statistics of a surface, and copies
-   * widening_outside to these statistics. */
+  /* Adds the seconds and build_seconds of a mcor_widen call to the statistics of a surface, and
+   * copies widening_outside to these statistics. */
   void mcor_add_widening(mcor_statistics* surface, const mcor_statistics* widening);
 
   typedef enum mcor_gradient

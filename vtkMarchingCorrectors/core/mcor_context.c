@@ -120,8 +120,8 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
-/* Prepares the search grid and the scalar for these options, or takes them from the last call if
- * they still hold. */
+/* Prepares the search grid and the scalar for these options. Takes from the last call what still
+ * holds. */
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
@@ -159,8 +159,9 @@ mcor_status mcor_prepare(
   return MCOR_OK;
 }
 
-/* Runs a call; if the lattice is too long, again without far particles. After a failure, or without
- * far particles, nothing that the context keeps counts as valid. */
+/* Runs a call. If the lattice around all particles is too long, runs the body again without far
+ * particles. After a failure, or if particles were left out, nothing that the context keeps counts
+ * as valid. */
 static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)

@@ -11,7 +11,8 @@
 #include "mcor_input.h"
 #include "mcor_plane.h"
 
-/* Returns whether cubes may have several sizes. Looks at about a thousand particles. */
+/* Returns whether cubes may have several sizes. Looks at the smoothing lengths of about a thousand
+ * particles. */
 static bool mcor_may_be_adaptive(const mcor_input* input, const mcor_options* options)
 {
   double low = INFINITY, high = 0;

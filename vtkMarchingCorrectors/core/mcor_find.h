@@ -51,7 +51,7 @@ extern "C"
     int64_t stride[2]; /* bytes from tuple to tuple, and from component to component; 0: no gaps */
   } mcor_named;
 
-  /* What an array, or one value for all particles, serves for. */
+  /* The quantity that an array gives, or one value for all particles. */
   typedef enum mcor_role
   {
     MCOR_ROLE_SMOOTHING_LENGTH = 0, /* the first four may be given as one value */
@@ -68,7 +68,7 @@ extern "C"
   } mcor_role;
 #define MCOR_ROLE_VALUES 4
 
-  /* What a call needs. */
+  /* What mcor_find_input is to find for a call; bits of mcor_request.wants. */
   typedef enum mcor_want
   {
     MCOR_WANT_SIZES = 1,      /* smoothing lengths, and volumes where they are known */
@@ -91,7 +91,7 @@ extern "C"
   typedef struct mcor_request
   {
     unsigned wants; /* bits of mcor_want */
-    /* The names of arrays that are given by hand; NULL or "": none. */
+    /* For each role, the name of the array that the user gives; NULL or "": none. */
     const char* names[MCOR_ROLE_COUNT];
     double values[MCOR_ROLE_VALUES]; /* one value for all particles; 0: none */
     int find; /* nonzero: arrays that are not given are found by their names */
@@ -102,8 +102,10 @@ extern "C"
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
     /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID; for
-     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 1: the array that
-     * MCOR_WANT_FLUID finds is used; 2: also, unused_type says so if no such array is found. */
+     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 0: MCOR_WANT_FLUID
+     * only names an array that seems to tell fluid, in unused_type; 1: an array that tells fluid
+     * without doubt is used; 2: as 1, and unused_type says so if there is no array of either
+     * kind. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;
@@ -115,8 +117,7 @@ extern "C"
     const mcor_only* only; /* [only_count]; a value must be in one of its array's ranges */
     int only_count;
     /* Names of arrays, one per line, or NULL. taken: arrays that are computed; excluded: other
-     * arrays that must not be attributes. The array of iso values has the scalar's name, unless a
-     * computed array has this name. */
+     * arrays that must not be attributes. */
     const char *taken, *excluded;
     int filled; /* nonzero: a filled region is made; its iso values are not values of the scalar */
     int has_iso_values; /* nonzero: there is an array of iso values; no attribute has its name */
@@ -139,8 +140,8 @@ extern "C"
     int* nearest; /* [nearest_count], arrays that cannot be interpolated: whole numbers, text */
     int nearest_count;
     mcor_named made[2]; /* "Velocity" of vx, vy and vz; "Density" of mass and volume; or no name */
-    /* Nonzero: the caller must compute lengths or densities by sums over neighbours, and hand them
-     * in: see mcor_take_lengths. */
+    /* Nonzero: the caller must compute smoothing lengths or densities by sums over neighbours, and
+     * pass them to mcor_take_lengths or mcor_take_densities. */
     int needs_lengths, needs_densities;
     mcor_message error;       /* what is missing or not usable */
     mcor_message unused_type; /* names an array that seems to tell fluid from solids, but is not
@@ -149,28 +150,30 @@ extern "C"
     char* no_fluid;           /* why no particle is fluid, without a full stop; NULL: some are */
     char*
       scalar_name; /* "Pressure", "Velocity_Magnitude", "Velocity_X", "A_Dot_B"; "": no scalar */
-    const char* iso_value_name; /* the scalar's name or, if it is taken, "IsoValue" */
+    const char* iso_value_name; /* the scalar's name; "IsoValue" if it is taken, or if `filled` */
     void** own;                 /* [own_count], memory that mcor_free_found frees */
     int own_count;
   } mcor_found;
 
-  /* Finds what the request wants. positions: [tuples][3]. ranks: NULL, or the ranks that share the
-   * particles: all of them call this with the same request and arrays of the same form, and agree
-   * on the fluid and on the array to contour. MCOR_INVALID_ARGUMENT: see found->error;
-   * MCOR_OUT_OF_CAPACITY: memory ran out. *found is overwritten. */
+  /* Finds the arrays that the request wants, and makes found->input of them. positions:
+   * [tuples][3]. ranks: NULL, or the ranks that share the particles: all ranks call this function
+   * with the same request and arrays of the same form, and agree on the fluid and on the array to
+   * contour. MCOR_INVALID_ARGUMENT: see found->error; MCOR_OUT_OF_CAPACITY: memory ran out. *found
+   * is overwritten. */
   mcor_status mcor_find_input(const mcor_request* request, const mcor_named* positions,
     const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
   void mcor_free_found(mcor_found* found);
 
-  /* Put the results [count] of mcor_find_smoothing_lengths and mcor_sum_densities into an input
-   * that needs them. The arrays are borrowed until mcor_free_found. Densities become the scalar. If
-   * there are masses, but no other densities and no volumes, the densities also give the
-   * volumes. */
+  /* Put smoothing lengths [count] of mcor_find_smoothing_lengths, or densities [count] of
+   * mcor_sum_densities, into an input that needs them. The arrays are borrowed until
+   * mcor_free_found. Densities become the scalar. If there are masses, but no other densities and
+   * no volumes, the densities also give the volumes. */
   void mcor_take_lengths(mcor_found* found, const double* lengths);
   void mcor_take_densities(mcor_found* found, const double* densities);
 
-  /* Returns the index of the array to show if the user has chosen none, see mcor_view_priority. If
-   * the active array is fit, it is shown. -1: no array is fit. */
+  /* Returns the index of the array to show if the user has chosen none: the active array, unless
+   * its mcor_view_priority is -1; else the array with the lowest priority number. -1: no array has
+   * such a number. `ranks` as in mcor_find_input. */
   int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks);
 
   /* Returns the index of the array that has the most usual name of the quantity, among arrays with

@@ -63,8 +63,8 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
   if (n > bunches->point_room)
   {
-    /* Makes room for the merged vertices, too, so that they need no further copy; they are at most
-     * half as many as the vertices. */
+    /* Makes room for the merged vertices, too: at most half as many as the vertices. So appending
+     * them needs no larger array. */
     bunches->point_room = n + n / 2;
     const size_t bytes = bunches->point_room * sizeof *bunches->points;
     mcor_point* points = realloc(bunches->points, bytes);
@@ -84,7 +84,9 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Writes each appended vertex's node, which is the replaced vertex's, and the offset from it. */
+/* Writes the node and the offset of each vertex in `starts`. The node is the node of the vertex
+ * that is replaced. The offset leads from the node to the point where the correction begins, in
+ * cells of the vertex's level. Also sets `last`. */
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -149,7 +151,9 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-/* Keeps the triangles whose corners still differ. */
+/* Moves the slice's triangles whose corners still differ to the front of the slice. Each corner
+ * becomes the number of the vertex that stays: in place of an appended vertex, the one that it
+ * replaces. */
 static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_bunches* bunches = data;

@@ -10,13 +10,13 @@
 
 #include <stdatomic.h>
 
-/* Merges vertices of the current iso value, and corrects the merged vertices. Comes after trimming
- * and caps, and leaves the borders of both as they are. */
+/* Merges vertices of the surface of the current iso value, and corrects the merged vertices. Call
+ * this after trimming and capping. Vertices that trimming or capping made stay where they are. */
 mcor_status mcor_compact(mcor_context* context);
 
-/* MCOR_COMPACT_RING: the width, in cells, of the ring around a box on which vertices in the box
- * depend. Whether a vertex is merged takes four cells, each round of taking bunches apart two more,
- * whether a vertex moves four, and the normals of triangles one. */
+/* MCOR_COMPACT_RING: vertices in a box depend on cells up to this many cells away from the box. It
+ * is the sum of 4 cells for whether a vertex is merged, 2 for each round of taking bunches apart, 4
+ * for whether a vertex moves, and 1 for the normals of triangles. */
 #define MCOR_COMPACT_ROUNDS 2
 #define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 9)
 
@@ -41,7 +41,7 @@ typedef struct mcor_bunch_vertex
 {
   uint64_t key;                /* the lattice node that the vertex belongs to, or MCOR_FROZEN */
   _Atomic int32_t first, next; /* its bunch's first vertex; another vertex of the bunch, or -1 */
-  int32_t star;                /* of a bunch: end of its list of triangles, see `before`; or -1 */
+  int32_t star;                /* of a bunch: first corner of its list, see `before`; -1: none */
   int32_t now;        /* the present place in the mesh of the vertex, or of its merged bunch */
   atomic_uchar state; /* of a bunch */
   atomic_bool wide; /* the vertex, or its merged bunch, may move: it is a sliver's widest corner */
@@ -49,9 +49,9 @@ typedef struct mcor_bunch_vertex
   bool leans;       /* of a bunch: it is taken apart if a bunch beside it is */
 } mcor_bunch_vertex;
 
-/* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX lattice edges. So sums
- * of positions do not depend on the order of the terms, and differences of positions stay the same
- * if both points move by a period. */
+/* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX edges of the smallest
+ * cubes. So sums of positions do not depend on the order of the terms, and the difference of two
+ * positions stays the same if both points move by a period. */
 #define MCOR_POINT_FIX 30
 typedef struct mcor_point
 {
@@ -79,22 +79,25 @@ typedef struct mcor_bunches
   int march_count, vertex_count, triangle_count;
   cl_int* triangles;     /* [triangle_count][3] */
   mcor_bunch_vertex* of; /* [vertex_count] */
-  /* [triangle_count][3], a list of triangles for each bunch: leads from a corner in the bunch to a
-   * corner of the list's previous triangle; -1: there is none. */
+  /* [triangle_count][3]. Corners are numbered 3 * triangle + corner. For each bunch, a linked list
+   * has one corner of each triangle around the bunch. The list begins at the corner `star` of the
+   * bunch. before[i] is the corner that follows corner i in the list; -1: the list ends. */
   int32_t* before;
   mcor_point* points; /* [point_room], of which point_count are the mesh's vertices */
   size_t point_room;
   int point_count;
   MCOR_LIST(mcor_start) starts;
-  /* What loops over vertices read or write: views of the mesh's buffers. While vertices are
-   * appended: node, their nodes; offset, where the lines of their correction begin (real [][4]). */
+  /* Views of the mesh's buffers, in which loops over vertices read or write. In mcor_add_vertices,
+   * `node` and `offset` are arrays of the appended vertices instead; `offset` (real [][4]) tells
+   * where the correction of each vertex begins. */
   void *node, *offset, *linear, *gradient, *ends;
-  /* Along each axis, the node coordinates of the sides that caps close, then of the sides of the
-   * period; vertices on these sides stay. -1: no such side. */
+  /* Along each axis, in cubes: the lower and upper side that caps close, then the lower and upper
+   * side of the period. Vertices on these sides stay. -1: no such side. */
   int side[3][4];
   cl_ulong* cells; /* [triangle_count] if mcor_follows_cells, else NULL */
   cl_int* pairs;   /* of vertices: one that is replaced, then the one that replaces it */
-  /* Each slice's first triangle, and the number of triangles left, which are moved there. */
+  /* For each slice of the triangles: its first triangle, and how many of its triangles are left.
+   * These stand at the front of the slice. */
   int64_t slice_first[MCOR_SLICES], slice_left[MCOR_SLICES];
 } mcor_bunches;
 
@@ -141,13 +144,14 @@ static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_
 /* mcor_compact.c. Appends to the mesh the vertices that begin at `starts`, and corrects them. */
 mcor_status mcor_add_vertices(mcor_bunches* bunches);
 
-/* mcor_compact_bunch.c. Finds the bunches. First merges each bunch that can be merged whether or
- * not others are merged, then bunches that can be merged only while these first ones stay merged
- * (`leans`). Fills `starts` with the merged bunches. */
+/* mcor_compact_bunch.c. Finds the bunches. First merges each bunch that can be merged both if all
+ * other bunches are merged and if none is. Then merges each bunch that can be merged only while
+ * some of these first bunches are merged; it `leans` on them. Fills `starts` with the merged
+ * bunches. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 
-/* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that turn triangles over.
- * mcor_move_slivers moves vertices of slivers. */
+/* mcor_compact_face.c. mcor_take_apart takes apart merged bunches that did not reach the surface,
+ * or that turn triangles over. mcor_move_slivers moves vertices of slivers. */
 mcor_status mcor_take_apart(mcor_bunches* bunches);
 mcor_status mcor_move_slivers(mcor_bunches* bunches);
 

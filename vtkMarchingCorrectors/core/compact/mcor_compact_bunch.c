@@ -12,8 +12,9 @@
  * whatever part of the surface a call makes; and it may be taken apart at any time. A closed piece
  * that would keep fewer than 8 triangles stays as it is.
  *
- * A bunch that fails this test may still be merged beside the bunches that pass it. It leans on
- * them: if one of them is taken apart, it is taken apart, too. */
+ * A bunch that fails this test may still be merged, if it can be merged while the bunches that pass
+ * the test are. It then leans on the bunches beside it: if one of these is taken apart, so is the
+ * bunch that leans on it. */
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"
@@ -81,8 +82,8 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   MCOR_THEN(status,
     mcor_parallel_run(
       context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, bunches, NULL));
-  /* Freezes the corners of caps. Marks the vertices at the ends of cut edges as held: keys of cuts
-   * refer to them, so they may be merged, but do not move alone. */
+  /* Freezes the corners of caps. Marks as held both end vertices of each cut edge: the key of the
+   * cut vertex refers to them, so they may be merged, but do not move alone. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
@@ -98,7 +99,8 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
-/* Returns the first of the vertices that v is joined to so far. `first` leads to lower vertices. */
+/* Returns the lowest vertex that v is joined to so far. `first` of a vertex leads to a lower joined
+ * vertex, and `first` of the lowest one to itself. */
 static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
 {
   for (int32_t first; (first = of[v].first) != v; v = first)
@@ -107,9 +109,9 @@ static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
   return v;
 }
 
-/* Joins vertices of one node that share an edge: of their first vertices, the higher one leads to
- * the lower one. If another thread has joined `high` meanwhile, continues with its new first
- * vertex. */
+/* Joins vertices of one node that share an edge. p and q are the lowest vertices that the two are
+ * joined to; `first` of the higher one of p and q becomes the lower one. If another thread has
+ * changed this `first` in the meantime, tries again from its new value. */
 static void mcor_join_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -132,7 +134,8 @@ static void mcor_join_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Makes a list of vertices for each bunch. The order in a list varies, and decides nothing. */
+/* Makes a list of vertices for each bunch. The order of a list may differ from run to run, which
+ * has no effect. */
 static void mcor_list_vertices(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_bunch_vertex* of = ((const mcor_bunches*)data)->of;
@@ -249,9 +252,9 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return seen == fan->count;
 }
 
-/* Whether a closed piece would keep enough vertices. Counts, as if all bunches were merged: this
- * bunch, the vertices of its ring, and the vertices of all triangles around the ring. Stops when
- * there are enough. */
+/* Whether a closed piece that has the bunch would keep at least MCOR_LEAST_PIECE vertices if all
+ * bunches were merged. Counts the bunch, the vertices of the ring around it, and the vertices of
+ * all triangles around the ring. Stops when there are enough. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* ring)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);
@@ -286,8 +289,9 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return count >= least;
 }
 
-/* Whether a bunch can be merged. all: it can be merged both if no other bunch is merged and if all
- * others are; else: it can be merged beside the bunches that are merged so far. */
+/* Whether a bunch can be merged. all: tests whether it can be merged both if no other bunch is
+ * merged and if all other bunches are. Otherwise tests whether it can be merged beside the bunches
+ * that are merged so far. */
 static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
 {
   mcor_fan fan, merged = { 0 };
@@ -308,7 +312,8 @@ static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
     (!all || mcor_is_ring(&fan, bunches->corners)) && mcor_is_large(bunches, bunch, &merged);
 }
 
-/* Merges the bunches that can be merged whether or not others are; the others become unsure. */
+/* Merges each bunch that can be merged both if all other bunches are merged and if none is. A bunch
+ * that fails this test becomes unsure (MCOR_BUNCH_UNSURE). */
 static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -323,8 +328,8 @@ static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Chooses unsure bunches that can be merged beside the bunches that are merged already. Of two
- * unsure bunches beside each other, only the first may be chosen. */
+/* Sets `leans` for each unsure bunch that can be merged beside the bunches that are merged already.
+ * If two unsure bunches are neighbours, only the one with the lower first vertex may be chosen. */
 static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -48,9 +48,9 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Marks merged bunches at each triangle as bad: the ones that did not reach the surface. If all
- * reached it, but the triangle is turned over, marks all merged bunches at the triangle. Marks a
- * sliver's widest corner, if this vertex may move. */
+/* Judges each triangle. A merged bunch that did not reach the surface becomes bad. If all reached
+ * it, but the triangle is turned over, all merged bunches at the triangle become bad. Sets `wide`
+ * for the widest corner of a sliver, if this vertex may move. */
 static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -145,9 +145,10 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
  * axis, in lattice edges. So it ends within MCOR_POINT_EXTENT of the node. */
 #define MCOR_FARTHEST_START 2.5
 
-/* Finds the middle of the vertices around a vertex, and the greatest badness of the triangles
- * around it. Returns whether the vertex may start in this middle: the middle must be near the
- * vertex's node, and no vertex beside it with a lower number may be a sliver's widest corner. */
+/* Sets start->at to the mean of the vertices around a vertex, and start->worst to the greatest
+ * badness of the triangles around it. Returns whether the vertex may move to this mean: the mean
+ * must be near the vertex's node (MCOR_FARTHEST_START), and no neighbour with a lower number may be
+ * the widest corner of a sliver. */
 static bool mcor_look_around(const mcor_bunches* bunches, mcor_start* start)
 {
   const mcor_bunch_vertex* of = bunches->of;
@@ -187,9 +188,9 @@ static bool mcor_look_around(const mcor_bunches* bunches, mcor_start* start)
   return moves && count > 0;
 }
 
-/* Moves each vertex at the widest angle of a sliver to the middle of the vertices around it, and
- * corrects it from there. Puts it back if it does not reach the surface, or if the worst triangle
- * around it gets no better. */
+/* Moves each vertex at the widest angle of a sliver to the mean of the vertices around it, and
+ * corrects the vertex from there. Puts the vertex back if it does not reach the surface, or if the
+ * worst triangle around it is no better than before. */
 mcor_status mcor_move_slivers(mcor_bunches* bunches)
 {
   bunches->starts.count = 0;

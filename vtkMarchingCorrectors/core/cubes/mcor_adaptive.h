@@ -21,7 +21,8 @@ static inline bool mcor_is_adaptive(const mcor_lattice* lattice)
     MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
     MCOR_BUFFER(&(c)->bricks.now.valid)
 
-/* Vertices on lattice edges, on the trim boundary, or both. */
+/* Which vertices a kernel is launched for: those on lattice edges, those made later (by trimming,
+ * capping or merging), or all. */
 enum
 {
   MCOR_ON_EDGES = 1,
@@ -50,8 +51,8 @@ mcor_status mcor_launch_at_vertices(
  * lattice edges or, with `lines`, along the gradient from the places that their offsets give. */
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines);
 
-/* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless this is done
- * already. */
+/* mcor_leaf.c. Makes the leaves (bricks of cells of one level, see mcor_tree.h), and writes their
+ * blocks to the device, unless this is done already. */
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
 /* Lists the leaves that may have surface. */
 mcor_status mcor_choose_leaves(mcor_context* context);

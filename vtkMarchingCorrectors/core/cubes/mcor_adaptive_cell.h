@@ -69,9 +69,9 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
   return (step < 3 ? 0 : step < 9 ? 1 : 2) << 5 | lower;
 }
 
-/* Links slots in a ring of nodes around a face: one segment cuts off each run of nodes above the
- * iso value, and leads from the slot before the run to the slot behind it. The ring is
- * counter-clockwise, seen from outside, so that triangles face the nodes below. */
+/* Links slots in a ring of nodes around a face. For each run of nodes above the iso value, one
+ * segment leads from the slot before the run to the slot behind it. The ring is counter-clockwise,
+ * seen from outside, so that triangles face the nodes below the iso value. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
   const int* ring, int count, MCOR_TYPE(uint) above, mcor_adaptive_links* links)
 {

@@ -37,8 +37,9 @@ static mcor_status mcor_test_cubes(
 /* Most blocks. If a fourth of these had surface, the triangles would reach their own limit. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
-/* Replaces the cubes by the parts of the active cubes. If the parts are blocks (level 1), also adds
- * the blocks `kept`. *parts: number of parts, without `kept`. */
+/* Replaces the cubes of a level by the parts of the active cubes among them. If the parts are
+ * blocks (level is 1), also adds the blocks `kept`. *parts: the number of parts of all active
+ * cubes, without `kept`. */
 static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
   const mcor_buffer* kept, int kept_count, int* parts)
 {
@@ -71,7 +72,7 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     context, keys, *parts + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* Makes the active blocks, and keeps the blocks of bricks whose nodes are known. */
+/* Makes the active blocks. If bricks have slots already, also keeps all earlier blocks. */
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -83,10 +83,11 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
   }
 }
 
-/* Allows diagonals between two opposite edges of each ambiguous face. A face has two pairs of
- * opposite edges; each of the two cells at the face may use one pair. Which pair depends on whether
- * the face's lowest corner is above the iso value. So the three faces around a corner are alike;
- * otherwise few tunnels could be made. */
+/* Allows diagonals in each ambiguous face, between two opposite edges of the face. A face has two
+ * such pairs of edges: one cell at the face uses one pair, the other cell the other pair. The sign
+ * of the face's lowest corner decides which cell uses which pair. By this rule, a cell makes the
+ * same choice in all three faces around a corner; with different choices, few tunnels could be
+ * made. */
 static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
 {
   for (int i = 0; i < loop->length; ++i)
@@ -174,7 +175,8 @@ typedef struct mcor_strip
   uint8_t path[3 * 24], best[3 * 24]; /* slots of triangles */
 } mcor_strip;
 
-/* Returns two vertices' squared distance, in half cubes; much more if both are in one face. */
+/* Returns the squared distance of two vertices, in half edges of the cell; much more if both are in
+ * one face. */
 static int mcor_side_cost(const mcor_strip* strip, int i, int j)
 {
   int cost = (strip->first.facets[i] & strip->second.facets[j]) >> 24 ? 1000 : 0;
@@ -186,8 +188,8 @@ static int mcor_side_cost(const mcor_strip* strip, int i, int j)
   return cost;
 }
 
-/* Tries all ways to continue a strip after a steps along the first loop and b steps along the
- * second. Keeps the cheapest strip. */
+/* Tries all ways to continue a strip that has made `a` steps along the first loop and `b` steps
+ * along the second. Keeps the cheapest strip. */
 static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 {
   const mcor_adaptive_loop *first = &strip->first, *second = &strip->second;
@@ -261,8 +263,9 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
   return pairs == 1;
 }
 
-/* Makes the rows of a case for one set of decisions. In `row`, discs fill all loops. Rows with a
- * tunnel are written to `to` and the places behind it. Returns the number of rows with a tunnel. */
+/* Makes the rows of a case for one set of decisions. In `row`, each loop is filled by a disc. Rows
+ * with a tunnel are written to to[0], to[1], ...; row->tunnel gets their numbers, counted from
+ * first_row. Returns the number of rows with a tunnel. */
 static int mcor_fill_rows(
   int cube_case, int joined, mcor_cell_row* first_row, mcor_cell_row* row, mcor_cell_row* to)
 {

@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Nodes of the virtual grid: their values, and on which side of the iso value they are. In two
- * dimensions, each node above the plane gets the side of the node below it in the plane. */
+ * dimensions, the nodes form two layers: in the plane and above it. Each node of the upper layer
+ * gets the side of the node below it. */
 
 #include "mcor_adaptive.h"
 
@@ -24,8 +25,9 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-/* Finds on which side of the iso value nodes are, in the bricks with bits in `evaluated`. The
- * nodes' values are new, or from an earlier iso value. */
+/* Finds on which side of the iso value the nodes are, in all bricks with a bit in `evaluated`. The
+ * nodes with bits in `evaluated` become known: their values are new, or from an earlier iso
+ * value. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   const mcor_brick_data* now = &context->bricks.now;

@@ -3,10 +3,10 @@
 
 /* The paper's seed selection by particle pairs [III-C].
  *
- * The cells on the line between the particles of a pair are marked. From the marked cells, others
- * are reached through crossed faces, and from one end of a period to the other. Which cells are
- * marked and reached depends only on the particles, the lattice and the iso value. Only bricks with
- * nodes of reached cells are evaluated.
+ * The cells on the line between the particles of a pair are marked. From the marked cells, other
+ * cells are reached through crossed faces, and from one end of a period to the other. Which cells
+ * are marked and reached depends only on the particles, the lattice and the iso value. Only bricks
+ * with nodes of reached cells are evaluated.
  *
  * Pairs are for comparisons with the paper: all cubes have one size, and one process makes the
  * whole surface. */

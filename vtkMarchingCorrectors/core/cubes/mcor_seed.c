@@ -23,8 +23,9 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* Requests bricks that are certainly on one side of the iso value, but beside a node on the other
- * side. Looks at nodes of bricks with bits in `fresh`. bricks.found: whether any were requested. */
+/* Requests each brick that is certainly on one side of the iso value, but touches a node on the
+ * other side. Looks only at nodes of bricks with a bit in `fresh`. bricks.found: whether a
+ * requested brick is new. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -36,7 +37,7 @@ static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer*
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
 }
 
-/* Requests the bricks whose nodes are known. */
+/* Requests slots for all bricks with known nodes, so that they keep their values. */
 static mcor_status mcor_request_known(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -66,10 +67,10 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const mcor_box* box = &context->box;
   const int levels = context->lattice.levels;
-  /* Leaves of several levels are chosen within the box already. */
+  /* With several levels, only leaves near the box exist, so the box needs no ring here. */
   const int ring = box->is_part && levels == 1 ? box->ring : MCOR_ENDLESS_RING;
   const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
-  /* Listed regions of level l: first[l] to end[l] - 1. */
+  /* The listed regions of level l are the elements first[l] to end[l] - 1 of bricks->regions. */
   int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
   for (int l = 0; l <= levels; ++l)
   {
@@ -126,8 +127,8 @@ static mcor_status mcor_complete_bricks(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Gives slots to the needed bricks, evaluates their nodes, and finds which cells may be used, and
- * which are plain (no finer brick touches them). */
+/* Gives slots to the needed bricks, evaluates their nodes, and finds which cells the surface may
+ * cross, and which cells are plain (no finer brick touches them). */
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -10,14 +10,15 @@
 
 #include "mcor_internal.h"
 
-/* Most leaves. A split brick has 8 parts, which are leaves unless they are split, too: each split
- * brick adds at least seven leaves. */
+/* MCOR_LEAF_LIMIT: the most leaves. MCOR_SPLIT_LIMIT: the most split bricks. A split brick has 8
+ * parts, which are leaves unless they are split, too: each split brick adds at least seven
+ * leaves. */
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
-/* mcor_tree_brick.c. Adds bricks of a cluster of 4^3 bricks to a set. key: of the cluster's first
- * brick; bricks: the mask of the bricks to add. Returns false if memory ran out or, before the set
- * takes much memory, if the leaves would become too many. */
+/* mcor_tree_brick.c. Adds bricks of a cluster of 4^3 bricks to a set. key: the key of the cluster's
+ * first brick; bricks: the mask of the bricks to add. Returns false if memory ran out, or if the
+ * set already has more than MCOR_SPLIT_LIMIT bricks. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 /* Whether the sets of all levels together would make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
@@ -62,7 +63,8 @@ static inline uint64_t mcor_bricks_between(
 /* Returns the level of a particle: the largest level L up to `top` with 2^L h_min <= h. */
 int mcor_tree_level_of(double h, double h_min, int top);
 
-/* Clusters, or other elements, that the host treats between two reports of progress. */
+/* The number of clusters, or other elements, that the host treats between two reports of
+ * progress. */
 #define MCOR_TREE_STEP 4096
 
 /* Begins a tree of the lattice, and numbers the blocks of all levels up to the level above the

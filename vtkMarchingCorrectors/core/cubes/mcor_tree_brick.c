@@ -17,10 +17,10 @@ int mcor_tree_level_of(double h, double h_min, int top)
   return level;
 }
 
-/* Most bricks of level 0. All levels together have a seventh more. */
+/* Most bricks of level 0. All higher levels together have about a seventh as many. */
 #define MCOR_BRICK_LIMIT 0x1p63
 
-/* The lattice is a whole number of bricks of level top + 1. */
+/* Along each axis, the lattice is covered by a whole number of bricks of level top + 1. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
   mcor_lattice* lattice = &context->lattice;

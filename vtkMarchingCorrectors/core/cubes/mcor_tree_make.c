@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: makes the leaves, which are the parts of split bricks (mcor_tree_split.c) that
- * are not split themselves. All ranks know all split bricks, but make leaves only in their box. A
- * block has a bit for each of its bricks that is a leaf: the parts of the bricks of one cluster
- * form a block of the level below. */
+ * are not split themselves. All ranks know all split bricks, but make only leaves near their box. A
+ * block is 8^3 bricks of one level: the parts of the 4^3 bricks of one cluster of the next higher
+ * level. A block has a bit for each of its bricks; the bit is set if the brick is a leaf. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -51,8 +51,8 @@ static mcor_status mcor_add_block(
   return MCOR_OK;
 }
 
-/* Adds blocks of one level: the ones that have parts of split bricks of the next level, or of these
- * bricks' periodic images, and all blocks around them. So the blocks have all leaves beside coarser
+/* Adds blocks of one level: each block that has parts of split bricks of the next higher level, or
+ * of their periodic images, and the blocks around it. So the blocks have all leaves beside coarser
  * leaves, and all bricks whose nodes leaves need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
@@ -122,7 +122,8 @@ static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const in
   return split;
 }
 
-/* Finds which bricks of a block are leaves, and which are split. Returns the number of leaves. */
+/* Finds which bricks of a block are split, and which are leaves near the box. Returns the number of
+ * these leaves. */
 static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, int level, uint64_t key,
   cl_uint leaves[MCOR_BLOCK_WORDS], cl_uint split[MCOR_BLOCK_WORDS])
 {

@@ -36,15 +36,17 @@ typedef struct mcor_tree_job
   atomic_bool failed;
 } mcor_tree_job;
 
-/* A particle, and the bricks that it may reach, `first` to `last`, of the level above its own. */
+/* A particle, and the bricks that it may reach: `first` to `last`, of the level `level`, which is
+ * one above its own. */
 typedef struct mcor_splitter
 {
   double x[3], reach; /* in cubes, from the lattice's origin */
   int level, first[3], last[3];
 } mcor_splitter;
 
-/* Returns the mask of those `bricks` of a cluster that a particle reaches. Most bricks that it does
- * not reach are too far away along one axis alone. */
+/* Returns the mask of those `bricks` of a cluster that a particle reaches. First drops whole layers
+ * of bricks that are too far away along one axis, then compares the distances of the other
+ * bricks. */
 static uint64_t mcor_reached_bricks(
   const mcor_tree_job* job, const mcor_splitter* p, const int cluster[3], uint64_t bricks)
 {
@@ -69,7 +71,8 @@ static uint64_t mcor_reached_bricks(
 }
 
 /* Adds to the set the bricks that a particle reaches. *all: whether the set already had all bricks
- * that the particle may reach. Returns false if the set could not take the bricks. */
+ * from p->first to p->last; always false at the end of the lattice or of the period. Returns false
+ * if the set could not take the bricks. */
 static bool mcor_split_reached(
   const mcor_tree_job* job, const mcor_splitter* p, mcor_brick_set* set, bool* all)
 {
@@ -101,10 +104,10 @@ static bool mcor_split_reached(
   return made;
 }
 
-/* Splits the bricks that one particle reaches. home: the brick in which the particle lies. done:
- * keys of homes whose neighbours are all split already; a key's place follows from its last bits.
- * Most particles are in such homes and reach no farther than the neighbours, so they are skipped.
- * Returns false if the set could not take the bricks. */
+/* Splits the bricks that one particle reaches. home: the brick in which the particle lies. done: a
+ * cache of keys of bricks whose neighbours are all split already. Most particles lie in such a
+ * brick, and reach no farther than its neighbours, so they are skipped. Returns false if the set
+ * could not take the bricks. */
 static bool mcor_split_by_particle(
   mcor_tree_job* job, int slice, mcor_splitter* p, uint64_t done[MCOR_BLOCK_BRICKS])
 {

@@ -11,7 +11,8 @@ void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
   data->count = 0;
 }
 
-/* Fills the new set of bricks, and moves the last set's data into it. */
+/* Fills bricks.now, the new set of bricks with slots. Bricks that are also in the set `last` get
+ * their data from it. */
 static mcor_status mcor_fill_bricks(
   mcor_context* context, const mcor_brick_data* last, int count, int words)
 {

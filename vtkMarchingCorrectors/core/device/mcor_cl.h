@@ -46,27 +46,29 @@ typedef struct mcor_build
  * are listed in kernels/programs.cmake, their kernels in mcor_program.c. */
 typedef enum mcor_program
 {
-  /* Compiled once for all SPH kernels and fields, with and without solids. */
+  /* The next five programs depend neither on the SPH kernel, nor on the field, nor on solids, so
+   * they are compiled only once. */
   MCOR_PROGRAM_GRID,    /* scans, sorts, the search grid */
   MCOR_PROGRAM_BRICKS,  /* blocks and bricks */
   MCOR_PROGRAM_CELLS,   /* marching, and triangles that are cut; lines in two dimensions */
   MCOR_PROGRAM_LEAVES,  /* adaptive cubes */
   MCOR_PROGRAM_CHOICES, /* topology, boxes, pairs */
-  /* Compiled for each build that makes surfaces. */
-  MCOR_PROGRAM_ATTRIBUTES, /* the same for all fields */
-  MCOR_PROGRAM_DENSITY,    /* computed volumes, of any call; the same for all fields */
+  /* The next seven programs are compiled for each build that makes surfaces. Two of them are the
+   * same for all fields. */
+  MCOR_PROGRAM_ATTRIBUTES, /* does not depend on the field */
+  MCOR_PROGRAM_DENSITY,    /* computed volumes, of any call; does not depend on the field */
   MCOR_PROGRAM_NODES,      /* seeds and values at nodes */
   MCOR_PROGRAM_VERTICES,   /* correction */
   MCOR_PROGRAM_TRIM,
   MCOR_PROGRAM_SHAPE, /* boundary eigenvalue, curvature, values at points of caps */
   MCOR_PROGRAM_RARE,  /* seeds of pairs, nodes in two dimensions */
-  /* For mcor_probe, mcor_derive and mcor_widen. The same for all fields and, in the form for GPUs,
-   * with and without solids. */
+  /* For mcor_probe, mcor_derive and mcor_widen. This program does not depend on the field and, on
+   * devices that use the GPU form of kernels, not on solids either. */
   MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
-/* Sets of programs: for the lattice, for a build's surfaces, for probes. If cl.builds_sets, each
- * set is one program: MCOR_PROGRAM_GRID, _NODES, _PROBE. */
+/* Sets of programs, as bits: for the lattice, for probes, and for the surfaces of a build. If
+ * cl.builds_sets, each set is one program: MCOR_PROGRAM_GRID, _PROBE and _NODES, in this order. */
 #define MCOR_PARTS_LATTICE ((1 << MCOR_PROGRAM_ATTRIBUTES) - 1)
 #define MCOR_PARTS_PROBE (1 << MCOR_PROGRAM_PROBE)
 #define MCOR_PARTS_FIELD (MCOR_PARTS_PROBE - 1 - MCOR_PARTS_LATTICE)
@@ -76,7 +78,9 @@ typedef struct mcor_kernel
   char name[48];
   cl_kernel kernel;
   mcor_program program;
-  /* [first item is 0, or not][few work-items, or many]: drivers compile a kernel for each case. */
+  /* Whether a launch took place, which may have made the driver compile. First index: whether the
+   * first work-item's number is above 0. Second index: whether there were MCOR_LARGE_LAUNCH items
+   * or more. */
   bool launched[2][2];
   double part; /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
 } mcor_kernel;
@@ -153,9 +157,9 @@ typedef struct mcor_arg
     .kind = MCOR_ARG_REAL, .real = (r)                                                             \
   }
 
-/* How much one work-item does. Light: a few operations for one of many elements; medium: a brick
- * or a batch; heavy: an evaluation of the field. On a CPU each medium or heavy item is a
- * work-group of its own, because code is faster there without a loop over the group. */
+/* How much one work-item does. Light: a few operations for one of many elements; medium: a brick or
+ * a batch; heavy: an evaluation of the field. On a CPU each medium or heavy work-item is a
+ * work-group of its own, because CPUs run code faster without a loop over the group. */
 typedef enum mcor_load
 {
   MCOR_LIGHT,
@@ -167,7 +171,7 @@ typedef enum mcor_load
   mcor_launch(context, name, load, (size_t)(items), (const mcor_arg[]){ __VA_ARGS__ },             \
     sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
 
-/* From this number of work-items on, PoCL compiles a kernel once more. */
+/* For a launch of this many work-items or more, PoCL compiles a kernel once more. */
 #define MCOR_LARGE_LAUNCH 65535
 
 /* Opens a device by name or number. NULL or "": the device that MCOR_DEVICE in the environment
@@ -246,8 +250,8 @@ mcor_status mcor_copy(
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
-/* Appends what the call has cost to the profile, if there is one. Returns `status`, the call's; or
- * a failure, if the call succeeded but its rows cannot be written. */
+/* Appends what the call has cost to the profile, if there is one. status: the result of the call.
+ * Returns `status` or, if it is MCOR_OK and the rows cannot be written, the failure to write. */
 mcor_status mcor_write_profile(
   mcor_context* context, const mcor_statistics* statistics, mcor_status status);
 void mcor_close_profile(mcor_context* context);

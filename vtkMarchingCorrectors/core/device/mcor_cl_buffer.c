@@ -340,7 +340,7 @@ mcor_status mcor_unmap_all(
   return status;
 }
 
-/* Returns how many bytes to fill or copy between two progress reports, in about 10 ms. */
+/* Returns how many bytes to fill or copy between two progress reports; they take about 10 ms. */
 static size_t mcor_step_of(size_t bytes)
 {
   const size_t most = (size_t)1 << 25;

@@ -41,9 +41,9 @@ mcor_status mcor_open_profile(mcor_context* context);
 cl_event* mcor_begin_profiled(struct mcor_profile* profile);
 mcor_status mcor_end_profiled(
   mcor_context* context, mcor_command command, const char* name, size_t bytes);
-/* Counts one more command in the profile. host, device: seconds. event: NULL, or an event from
- * which the profile reads more seconds of the device when the command is done. The profile then
- * releases the event. */
+/* Counts one more command in the profile. host, device: how many seconds the command took there.
+ * event: NULL, or an event; when the command is done, the profile adds the event's time to the
+ * seconds of the device, and releases the event. */
 mcor_status mcor_add_to_profile(mcor_context* context, mcor_command command, const char* name,
   int64_t bytes, double host, double device, cl_event event);
 /* Returns the seconds between start and end of a command; -1: the driver does not tell. */
@@ -107,9 +107,9 @@ void mcor_drop_programs(mcor_cl* cl, int programs);
 #define MCOR_PARTS_ALL ((1 << MCOR_PROGRAM_COUNT) - 1)
 mcor_status mcor_make_program(mcor_context* context, mcor_program number, cl_program* program);
 
-/* mcor_cl_build.c. Takes a program that is built ahead: waits for it, or builds it if no thread has
- * begun to. *error: OpenCL's result of the build. *program and *error do not change if the program
- * is not built ahead, or if the user cancels the call. */
+/* mcor_cl_build.c. Takes a program that is built ahead: waits until it is built, or builds it if no
+ * thread has begun to. *error: OpenCL's result of the build. *program and *error do not change if
+ * the program is not built ahead, or if the user cancels the call. */
 mcor_status mcor_await_program(
   mcor_context* context, mcor_program number, cl_program* program, cl_int* error);
 

@@ -115,7 +115,8 @@ static bool mcor_contains(const char* text, const char* part)
   return false;
 }
 
-/* Finds the device that the user named; returns its index in the list, or -1. */
+/* Returns the index in the list of the device that the user named; -1: there is none. wanted: a
+ * number, or a part of the name of the device or platform. *by_number: whether it is a number. */
 static int mcor_find_device(const mcor_device_list* list, const char* wanted, bool* by_number)
 {
   char* end = NULL;
@@ -175,9 +176,9 @@ static void mcor_query_device(mcor_cl* cl)
   cl->units = (int)units;
 }
 
-/* Distributes `count` processes over the devices that are like the chosen one. Returns the device
- * of process *place. *count becomes the number of processes on this device, and *place the number
- * of this process among them. */
+/* Distributes `count` processes over the devices of the chosen one's platform and type. Returns the
+ * device of process *place. *count becomes the number of processes on this device, and *place the
+ * number of this process among them. */
 static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
 {
   int like[MCOR_DEVICE_LIMIT], n = 0;
@@ -317,7 +318,8 @@ static mcor_status mcor_fail_without_device(
     context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_DEVICE), MCOR_POCL_HINT, mcor_driver_fault(list));
 }
 
-/* Starts the best device for a build if the user named none. */
+/* Starts the best device for a build; called if the user named no device. is_replaced: whether a
+ * call with the default options would have taken another device. */
 static mcor_status mcor_start_default(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {

@@ -72,16 +72,19 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
  * seconds, and a user may want to cancel the run. A single work-item is never cut. */
 #define MCOR_PART_SECONDS 0.04
 #define MCOR_FIRST_PART 65536 /* work-items, on a GPU */
-/* The most terms of sums in a part, for each compute unit of a CPU in single precision; in double
- * precision (MCOR_DOUBLE_TERMS) there are fewer lanes, and more to do. Usual launches fit into one
- * part. Parts do not become larger, because the next work-items may have far more to do. */
+/* MCOR_PART_TERMS: the most terms of sums in a part, for each compute unit of a CPU, in single
+ * precision. MCOR_DOUBLE_TERMS: the same in double precision, with fewer lanes and more to do.
+ * Usual launches fit into one part. Parts do not become larger, because the next work-items may
+ * have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
-/* While a kernel's time is unknown, its first part on a CPU is the limit divided by this number. */
+/* While a kernel's time is unknown, its first part on a CPU has the largest allowed number of
+ * work-items, divided by this number. */
 #define MCOR_FIRST_SHARE 32
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
-/* Launches `count` work-items from `offset` on. Drivers may compile a kernel once more for many
- * items, and once more for items that do not begin at 0. The built-in device compiles nothing. */
+/* Launches `count` work-items from `offset` on. Drivers may compile a kernel once more for
+ * MCOR_LARGE_LAUNCH items or more, and once more if the first item is not 0. The built-in device
+ * compiles nothing. */
 static mcor_status mcor_enqueue_part(
   mcor_context* context, mcor_kernel* kernel, size_t offset, size_t count, size_t group)
 {
@@ -105,9 +108,10 @@ static mcor_status mcor_enqueue_part(
   return MCOR_OK;
 }
 
-/* Launches all work-items in parts. An item's work grows with the number of particles that reach a
- * point. On the built-in device parts cost nothing, so each launch begins with small parts, and no
- * part becomes large. A driver may compile a kernel once more for items that do not begin at 0. */
+/* Launches all work-items in parts. The work of an item grows with the number of particles that
+ * reach a point. On the built-in device parts cost nothing, so each launch begins with small parts,
+ * and no part becomes large. A driver may compile a kernel once more for parts that do not begin at
+ * item 0. */
 static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)
 {

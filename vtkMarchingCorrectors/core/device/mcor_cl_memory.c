@@ -136,7 +136,8 @@ void mcor_end_sight(mcor_sight* sight)
   *sight = (mcor_sight){ .count = 0 };
 }
 
-/* Returns an array's values in a type; NULL: memory ran out. *made: memory to free, or NULL. */
+/* Returns an array's values, converted to `type`; NULL: memory ran out. *made: memory that the
+ * caller frees, or NULL if the array's own values are returned. */
 static const void* mcor_convert(const mcor_array* from, mcor_type type, int64_t values, void** made)
 {
   *made = from->type == type ? NULL : malloc((size_t)values * mcor_size_of(type));

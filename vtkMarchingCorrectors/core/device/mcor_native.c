@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The built-in device's objects, memory, programs and kernels: what mcor_cl_*.c use of OpenCL. A
- * buffer is memory of the host. A command queue, which is always empty, is its context. */
+ * buffer is memory of the host. A command queue is always empty, and is the same object as its
+ * context. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
@@ -21,9 +22,9 @@
 /* Below this number of light work-items (groups of 64, some nanoseconds each) a launch is not worth
  * waking threads. Any medium or heavy launch (groups of one) is worth it. */
 #define MCOR_FEW_LIGHT_ITEMS 8192
-/* Parts of a launch for each thread. There are many, because work-items differ, the heavy ones by
- * far, and threads without work wait for the last part. A part has at most MCOR_PART_ITEMS
- * work-items. */
+/* How many parts of a launch each thread gets. There are many, because work-items take different
+ * times, heavy ones above all, and threads without work wait for the last part. A part has at most
+ * MCOR_PART_ITEMS work-items. */
 #define MCOR_LIGHT_PARTS 16
 #define MCOR_HEAVY_PARTS 64
 #define MCOR_PART_ITEMS 4096

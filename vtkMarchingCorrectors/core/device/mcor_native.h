@@ -4,9 +4,9 @@
 #define mcor_native_h
 
 /* The built-in device: an OpenCL platform inside this library. Its one device is the CPU, for which
- * the kernels were compiled with the library (CompileAhead.cmake). The platform has only those
- * functions of OpenCL that this library calls: kernels are not timed, programs are not loaded, and
- * a share of the device is a number of threads. Each command is done when its call returns. */
+ * the kernels were compiled with the library (CompileAhead.cmake). The platform has only the
+ * functions of OpenCL that this library calls. Kernels are not timed. A share of the device is a
+ * number of threads. Each command is done when its call returns. */
 
 #include "mcor_parallel.h"
 

@@ -15,8 +15,8 @@
 
 #define MCOR_SLICES 32 /* most slices of a loop */
 
-/* The least number of elements for which starting a thread (about 30 us) is worth it: of elements
- * that take 10 ns, that take 1 ns, or that are only read from memory. */
+/* The least number of elements for which starting a thread (about 30 us) is worth it. Heavy: an
+ * element takes 10 ns; light: 1 ns; memory: elements are only read from memory. */
 #define MCOR_HEAVY_GRAIN 8192
 #define MCOR_LIGHT_GRAIN 65536
 #define MCOR_MEMORY_GRAIN 262144
@@ -32,10 +32,10 @@ typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t la
 int mcor_parallel_for(
   mcor_context* context, int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
-/* Runs the body as mcor_parallel_for does, but asks the context's progress callback, which may
- * cancel the call; then some slices do not run. *slices becomes the number of all slices, unless it
- * is NULL. Nobody is asked if the context is NULL or not in a call. A body must not use loops or
- * launches of the same context. */
+/* Runs the body as mcor_parallel_for does, but also asks the context's progress callback, which may
+ * cancel the call; then some slices do not run. *slices becomes the number of all slices, unless
+ * `slices` is NULL. If the context is NULL or not in a call, no callback is asked. A body must not
+ * use loops or launches of the same context. */
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices);
 
@@ -50,8 +50,8 @@ int mcor_limit_threads(int usable);
 /* Treats elements [first, last) of a loop without slices. */
 typedef void mcor_pool_body(void* data, size_t first, size_t last);
 
-/* Threads that sleep until there is a loop to share with the thread that runs it. They are created
- * when a loop needs them. A pool that is all zero, except for `threads`, has none yet. */
+/* Threads that sleep until the calling thread has a loop to share with them. They are created when
+ * a loop needs them. A pool that is all zero, except for `threads`, has no threads yet. */
 typedef struct mcor_pool
 {
   int threads;    /* the most threads, the calling one included; 0: not decided */

@@ -20,12 +20,13 @@ typedef struct mcor_kernel_source
     MCOR_ANY_FORM,
     MCOR_CPU_FORM,
     MCOR_GPU_FORM
-  } form; /* of the kernels that it is in */
+  } form; /* the form of kernels that needs this source */
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
-/* Returns, as bits, which programs are compiled as this one: only itself; if cl->builds_sets, all
- * of its set, or none if another program holds the set. */
+/* Returns the programs whose kernels are compiled into this one, as bits 1 << mcor_program. Without
+ * cl->builds_sets, this is the program itself. With it, MCOR_PROGRAM_GRID, _NODES and _PROBE have
+ * all programs of their set (see MCOR_PARTS_LATTICE), and the other programs have none. */
 int mcor_parts_of(const mcor_cl* cl, mcor_program program);
 /* Returns the program that has a kernel; the beginning of the kernel's name tells which. */
 mcor_program mcor_program_of(const mcor_cl* cl, const char* kernel);

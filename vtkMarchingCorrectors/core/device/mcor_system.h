@@ -19,9 +19,9 @@ uint64_t mcor_system_memory(void);
 /* alignment: a power of 2. Returns NULL if memory ran out. */
 void* mcor_system_allocate(size_t alignment, size_t bytes);
 void mcor_system_release(void* memory);
-/* Asks for large pages, where the system has them, before a large array of the host, or of a
- * device that shares its memory, is first touched. Without them, the first touch of each 4 kB
- * takes a third of the time of a run with ten million particles. */
+/* Asks for large pages, where the system has them. Called before the first touch of a large array
+ * of the host, or of a device that shares the host's memory. With pages of 4 kB, first touches take
+ * a third of the time of a run with ten million particles. */
 #define MCOR_LARGE_ARRAY ((size_t)1 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 
@@ -36,7 +36,8 @@ mcor_function mcor_system_opencl(void);
 
 /* Compiles a function of long loops twice, the second time for processors with AVX2, if the loader
  * can choose: this saves about half of the instructions. The bits are the same, as every operation
- * is rounded by itself. Not with sanitizers, which are not ready when the loader chooses. */
+ * is rounded by itself. Sanitizers are not ready when the loader chooses, so with them a function
+ * is compiled once. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&       \
   !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define MCOR_VECTOR_LOOPS __attribute__((target_clones("avx2", "default")))

@@ -94,7 +94,8 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   return base;
 }
 
-/* Reserves an element for each particle, and zeros behind them, which vector loads may read. */
+/* Makes room for an element of each particle, and writes zeros behind them, which vector loads may
+ * read. */
 static mcor_status mcor_reserve_padded(
   mcor_context* context, mcor_buffer* buffer, int count, size_t size)
 {
@@ -165,7 +166,8 @@ static mcor_status mcor_index_cells(mcor_context* context, uint64_t cells)
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
-    /* Each cell has a bucket, so keys are not needed. The scalar's values take their memory. */
+    /* Each cell has a bucket, so the keys are not needed. Their memory is used for the values of
+     * the scalar. */
     mcor_release(context, &context->stage.values);
     context->stage.values = grid->cell_keys;
     grid->cell_keys = (mcor_buffer){ 0 };
@@ -296,7 +298,7 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
     double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
     job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
                : mcor_read_scalar(input, from, count, chunk);
-    /* The images of a particle stand side by side. */
+    /* The periodic images of a particle follow one another, and have the same value. */
     for (n = 0; n < MCOR_CHUNK && begin + n < last &&
          mcor_source_of(job->context, begin + n) < from + count;
          ++n)

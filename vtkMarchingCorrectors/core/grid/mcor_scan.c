@@ -74,7 +74,7 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
   *b = c;
 }
 
-/* Returns the number of bits of numbers below a limit. */
+/* Returns how many bits hold any number below a limit. */
 static int mcor_bits_below(uint64_t limit)
 {
   int bits = 1;
@@ -85,7 +85,8 @@ static int mcor_bits_below(uint64_t limit)
   return bits;
 }
 
-/* Sorts keys below key_limit; values[i] becomes the former position of key i. Stable. */
+/* Sorts keys, which are below key_limit, in ascending order. values[i] becomes the former position
+ * of the key that is now at i. Equal keys keep their order. */
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
@@ -139,7 +140,8 @@ static mcor_status mcor_number_runs(
   return mcor_scan(context, flags, count, distinct_count);
 }
 
-/* Sorts `keys`, and lists the distinct ones; index_of[i]: the former key i's index among these. */
+/* Sorts `keys`, and lists the distinct ones. index_of[i] becomes the index, in this list, of the
+ * key that was at i before sorting. */
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)
 {
@@ -158,8 +160,8 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Lists the distinct keys among sorted keys, and the index at which each begins; the number of all
- * keys follows behind the indices. */
+/* Lists the distinct keys among sorted keys. begins: the index of the first of each run of equal
+ * keys, then, at the end, the number of all keys. */
 mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
   mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count)
 {
@@ -174,14 +176,16 @@ mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int c
   return MCOR_OK;
 }
 
-/* Most buckets for `keys` keys, so that memory stays in proportion to the number of keys. */
+/* Returns the most buckets for `keys` keys, so that memory stays in proportion to the number of
+ * keys. */
 uint64_t mcor_most_buckets(int keys)
 {
   const uint64_t most = 4 * (uint64_t)keys + (1 << 20);
   return most < INT32_MAX / 2 ? most : INT32_MAX / 2;
 }
 
-/* Indexes sorted keys: bucket b begins at the first key >= b << shift. */
+/* Indexes sorted keys, which are below key_limit. Bucket b begins at the first key that is at least
+ * b << *shift. */
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift)
 {

@@ -8,8 +8,8 @@
  *
  * A kernel is W = norm / h^3 * w(q), q = r / h. w is one branch-free expression for all q >= 0, and
  * 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h). All others
- * must be positive and fall with q, because bounds rely on this, and their rounding error is at
- * most 96 units of rounding of w (mcor_bound.cl). All kernels use only operations that every device
+ * must be positive and fall with q. The rounding error of w must be at most 96 units of rounding.
+ * Bounds of the field rely on both (mcor_bound.cl). All kernels use only operations that every device
  * rounds alike: no sine, no power, no exponential. */
 
 /* A row has what the core knows of a kernel. Rows are in the order of mcor_sph_kernel:

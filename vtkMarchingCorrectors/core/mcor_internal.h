@@ -37,7 +37,8 @@
  * something. */
 #define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
 
-/* MCOR_LIST: an array that grows. MCOR_APPEND appends a value. */
+/* MCOR_LIST: an array that grows. MCOR_APPEND appends a value; if memory runs out, the calling
+ * function returns the failure. */
 #define MCOR_LIST(type)                                                                            \
   struct                                                                                           \
   {                                                                                                \
@@ -64,9 +65,9 @@ mcor_status mcor_fail(
 #endif
   ;
 #define MCOR_NO_MESSAGE ((mcor_message){ MCOR_SAYS_NOTHING, NULL })
-/* mcor_text writes a new text. mcor_append returns the given text with more text behind it, and
- * frees the given one. The caller frees the result. NULL: memory ran out in this call, or in an
- * earlier one (`text` is NULL). */
+/* mcor_text returns a new text. mcor_append frees the given text, and returns a new text: the given
+ * text with more text behind it. The caller frees the result. NULL: memory ran out in this call or,
+ * if `text` is NULL, in an earlier call. */
 char* mcor_text(const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 1, 2)))
@@ -77,8 +78,8 @@ char* mcor_append(char* text, const char* format, ...)
   __attribute__((format(printf, 2, 3)))
 #endif
   ;
-/* Writes to out [size] the text with words in place of its slots, such as {cube_size}. Cuts the
- * result, and returns its full length, as snprintf does. */
+/* Writes to out [size] the text with words in place of its slots, such as {cube_size}. A longer
+ * result is cut. Returns the length of the whole result, as snprintf does. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
 /* Bytes for the word that fills a slot, with the final 0; a longer word is cut. */
 #define MCOR_WORD_SIZE 256
@@ -138,12 +139,13 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 /* The most cubes along an axis for a lattice that is cut to a box or to points; particles with long
  * supports may lie far outside of such a lattice. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
-/* Keys have bits for this many nodes along an axis, and for this many cells in all; see
- * MCOR_RING_CELL. */
+/* Keys have bits for MCOR_NODE_LIMIT nodes along an axis, and for MCOR_KEY_LIMIT cells in all. The
+ * two highest bits of a key are flags, see MCOR_RING_CELL. */
 #define MCOR_NODE_LIMIT (1 << 21)
 #define MCOR_KEY_LIMIT 4.6e18
 
-/* Whether vertex v is in the output, as point scanned[v] of its mesh. */
+/* Whether vertex v is in the output, as point scanned[v] of its mesh. scanned: for each vertex, the
+ * number of output vertices before it, see mcor_number_vertices. */
 static inline bool mcor_is_output(const cl_int* scanned, int64_t v)
 {
   return scanned[v] != scanned[v + 1];
@@ -219,12 +221,13 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
   return mcor_wants_pairs(context->run.options);
 }
 
-/* Does the work of one call. First frees what a failed attempt may have left in the result. */
+/* A function that does the work of one call, and writes to `result`, e.g. a mcor_surface. It first
+ * frees what a failed attempt may have left in the result. */
 typedef mcor_status (*mcor_body)(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result);
 
-/* Runs the body. If memory ran out, frees what the context keeps and, unless there are ranks, runs
- * the body once more. Fails if mcor_create_context failed. */
+/* Runs the body. If memory runs out, frees what the context keeps. If this sets memory free, and
+ * there are no ranks, runs the body once more. Fails if mcor_create_context failed. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
@@ -309,9 +312,11 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
 /* mcor_box.c. Whether `sides` holds bounds; six zeros (0 or -0) mean none. */
 bool mcor_has_sides(const double sides[6]);
 
-/* mcor_extract.c. Whether a surface's programs read solids, even if this rank has none. */
+/* mcor_extract.c. Whether the programs for a surface read solids. With globals, the solids of all
+ * ranks decide, so that all ranks use the same programs. */
 bool mcor_has_solids(const mcor_input* input, const mcor_options* options);
-/* Returns the programs that a surface needs, a bit for each. The plane must have been found. */
+/* Returns the programs that a surface needs, as bits 1 << mcor_program. Call mcor_find_plane first:
+ * the programs depend on whether the call is in a plane. */
 int mcor_list_programs(const mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool has_solids);
 
@@ -328,8 +333,8 @@ void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
 /* Marks the cells between the particles of each pair (bricks.seeds). Finds all cells that are
- * reached from marked cells through crossed faces (bricks.cells, with the marked cells). Evaluates
- * the nodes of all cells that it finds. */
+ * reached from marked cells through faces that the surface crosses (bricks.cells, with the marked
+ * cells). Evaluates the nodes of all cells that it finds. */
 mcor_status mcor_find_reached(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
@@ -346,12 +351,13 @@ mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 mcor_status mcor_march(mcor_context* context);
 mcor_status mcor_resolve_topology(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context);
-/* Evaluates the boundary eigenvalue at vertices: at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
+/* Evaluates the boundary eigenvalue at vertices. `vertices`: MCOR_ON_EDGES or MCOR_ALL_VERTICES,
+ * see mcor_adaptive.h. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context);
-/* Return, in this order: whether the mesh is trimmed; whether the boundary eigenvalue decides
- * where; the quantity that trimming compares, at the vertices on lattice edges; and the threshold
- * of this quantity. */
+/* mcor_is_trimmed: whether the mesh is trimmed. mcor_trims_by_eigenvalue: whether the vertex
+ * threshold is for the boundary eigenvalue, not for the weight. mcor_trim_quantity returns the
+ * quantity that trimming compares with mcor_trim_threshold, at the vertices on lattice edges. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
@@ -402,9 +408,9 @@ static inline void mcor_move_triangle(mcor_surface* surface, int64_t from, int64
   }
 }
 
-/* Return the key of a brick (rung: where the keys of the brick's level begin) and of a node (its
- * level is in node[3]). Keys have the order of slots and vertices: by level, block, brick and node,
- * each by z, y, x. A cell has the key of its lowest node. */
+/* Return the key of a brick, and of a node. rung: the rung of the brick's level. node: x, y, z, and
+ * level << MCOR_LEVEL_SHIFT. Keys have the order of slots and vertices: by level, block, brick and
+ * node, each by z, y, x. A cell has the key of its lowest node. */
 static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
 {
   uint64_t block = 0, number = 0;
@@ -430,7 +436,8 @@ static inline bool mcor_lacks_normal(const float normal[3])
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
 }
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
-/* Measures the surface: writes is_closed, area and volume to its statistics. */
+/* Measures a surface of triangles: writes is_closed, area and volume to its statistics. Does
+ * nothing for lines. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
 /* The cases of Marching Cubes, with all decisions on their ambiguous faces. */

@@ -124,8 +124,8 @@ extern "C"
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
-  /* Returns the distance (unit L) by which a particle's support may miss a box that still needs the
-   * particle; see mcor_options.globals. */
+  /* Returns a distance, unit L. A box needs the particles whose supports miss the box by no more
+   * than this distance; see mcor_options.globals. smoothing_length: of the particle, unscaled. */
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
   /* Returns how far from a box all particles are needed, however short their supports are, because

@@ -44,7 +44,8 @@ static bool mcor_same_bounds(const double a[6], const double b[6])
   return memcmp(a, b, 6 * sizeof *a) == 0;
 }
 
-/* Whether all options on which the search grid depends are the same. */
+/* Whether the options are the same, except for options of scope KEEPS in mcor_options.def: these
+ * may change without harm to what the context keeps. */
 static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
 {
   enum
@@ -60,8 +61,8 @@ static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
   same = same && ((scope) == KEEPS || a->member == b->member);
 #define BOUNDS(member, scope, property) same = same && mcor_same_bounds(a->member, b->member);
 #include "mcor_options.def"
-  /* With a box or a period, the choice of seeds, and the output of nearest particles, decide which
-   * particles and images around the box are needed. */
+  /* With a box or a period, two more options decide which particles and images around the box are
+   * needed: the seeds, and whether the nearest particles are output. */
   const bool part = mcor_has_box(a) || mcor_has_sides(a->periodic);
   const unsigned changed = a->outputs ^ b->outputs;
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sentences of mcor_says.def, and what fills their slots. */
+/* The sentences of mcor_says.def, and the words that fill their slots, such as {cube_size}. */
 
 #include "mcor_internal.h"
 

@@ -12,8 +12,8 @@
 #define MCOR_TYPE(type) cl_##type
 #endif
 
-/* Search grid: this number of elements follows the particles in arrays, because vector loads may
- * read beyond the last particle. It is the width of the widest vector load. */
+/* Arrays of the search grid have this number of elements behind the last particle, because vector
+ * loads may read beyond it. The number is the width of the widest vector load. */
 #define MCOR_PADDING 16
 
 typedef struct mcor_level
@@ -54,8 +54,9 @@ typedef struct mcor_level
  * go on with another work-item while it waits for memory. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
 
-/* INSERTION: successive cells with at most this number of particles together share an insertion
- * sort; a larger cell is sorted by a heap. USUAL: the least value of most_in_cell in mcor_grid. */
+/* MCOR_INSERTION_OF: successive cells that together have at most this number of particles are
+ * sorted in one call of mcor_grid_insert; a larger cell is sorted by a heap. MCOR_USUAL_IN_CELL:
+ * the least value of most_in_cell in mcor_grid. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
 
@@ -68,9 +69,10 @@ typedef struct mcor_level
 /* One launch reads the values of up to this number of arrays, see mcor_values_load. */
 #define MCOR_ARRAY_STEP 4
 
-/* SIDE_PARTICLES: one flag tells on which sides of the iso value so many successive particles are,
- * see mcor_seed_side_flags. PAIR_VECTORS: one work-item finds the pairs of particles in so many
- * vectors. The number is small, because a particle may have many pairs. */
+/* MCOR_SIDE_PARTICLES: this many successive particles share a flag, which tells on which sides of
+ * the iso value they are, see mcor_seed_side_flags. MCOR_PAIR_VECTORS_OF: one work-item finds the
+ * pairs of particles in this many vectors of particles. The number is small, because a particle may
+ * have many pairs. */
 #define MCOR_SIDE_PARTICLES 16
 #define MCOR_PAIR_VECTORS_OF(lanes) ((lanes) == 1 ? 1 : 8)
 
@@ -113,10 +115,12 @@ typedef struct mcor_rung
   MCOR_TYPE(int) unused;
 } mcor_rung;
 
-/* A vertex's edge is x, y, z of a node, and a number: level << this | a flag and the axis. */
+/* A vertex's lattice edge is four ints: x, y, z of the edge's lower node, and level <<
+ * MCOR_LEVEL_SHIFT | flag << 2 | axis. */
 #define MCOR_LEVEL_SHIFT 8
 
-/* Slots of the bricks that a leaf may need: 2^3 of its level, 3^3 of the next finer level. */
+/* A leaf has a table of the slots (indices in buffers) of all bricks that it may need: 2^3 bricks
+ * of its level, 3^3 bricks of the next finer level. */
 #define MCOR_LEAF_SLOTS (8 + 27)
 
 /* How many uints hold the used cells around the edges of a brick: one mask, of two uints, for each
@@ -129,10 +133,10 @@ typedef struct mcor_rung
 /* Greatest distance along each axis between the nodes of a group's points, in cubes. */
 #define MCOR_GROUP_EDGE 7
 
-/* Points of a group, and particles, are measured from one node. Along each axis, the points are at
- * most this far away: half a group, a point's offset (up to 2.5), and 1. Particles with long
- * supports are rounded more coarsely (mcor_stage.c), so that their positions are exact reals if
- * measured from any node up to this distance outside of their supports. */
+/* Positions of the points of a group, and of particles, are relative to one node. Along each axis,
+ * the points are at most this far away: half a group, a point's offset (up to 2.5), and 1.
+ * Particles with long supports are rounded more coarsely (mcor_stage.c), so that their positions
+ * are exact reals relative to any node up to this distance outside of their supports. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
 /* Groups of points close to each other that one work-item evaluates together. */

@@ -222,7 +222,8 @@ typedef struct mcor_points
   mcor_buffer flags, groups;
 } mcor_points;
 
-/* Points that are evaluated in sorted order, as nodes and offsets; names with in_: in input order. */
+/* Points, as nodes and offsets, at which the field is evaluated in sorted order. in_node and
+ * in_offset are in the order of the input. */
 typedef struct mcor_point_batch
 {
   mcor_buffer keys, order, in_node, in_offset, node, offset;
@@ -240,7 +241,8 @@ typedef struct mcor_trim_data
                                  * them */
 } mcor_trim_data;
 
-/* Buffers for sorting. mcor_unique and mcor_list_runs use flags, mcor_unique uses order. */
+/* Buffers for sorting. mcor_unique and mcor_list_runs also use `flags`; mcor_unique also uses
+ * `order`. */
 typedef struct mcor_sort_data
 {
   mcor_buffer keys, values, histogram, order, flags;
@@ -275,7 +277,8 @@ enum
 /* The cells that a call owns, see mcor_box.c. */
 typedef struct mcor_box
 {
-  /* is_part: there is a period, or this call does not own all cells; is_empty: it owns no cell */
+  /* is_part: there is a period, or this call does not own all cells; is_empty: this call owns no
+   * cell */
   bool is_part, is_empty;
   int ring;               /* width of the ring of cells that are examined around the owned ones */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */

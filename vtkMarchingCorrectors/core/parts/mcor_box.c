@@ -59,13 +59,13 @@ void mcor_move_period(mcor_options* options)
  * vertex by 3/4 of a cube. */
 #define MCOR_BOX_MARGIN 1.25
 
-/* A particle whose support misses a box by more than this, in cubes, is not needed there. */
+/* A box does not need a particle whose support misses the box by more than this, in cubes. */
 #define MCOR_GLOBALS_MARGIN(ring) ((ring) + 2)
 
-/* The same margin with adaptive cubes, in cells of the particle's level; a particle reaches no
- * larger cells. A cell of the ring, or one whose centre is in the box, has nodes at most two cells
- * away from the box; trimming may move a vertex by another 3/4 of a cell, into cells half as large.
- * For a wider ring see mcor_level_ring. */
+/* The same margin with adaptive cubes, in cells of the particle's level; a particle does not reach
+ * larger cells. A cell of the ring, or a cell whose centre is in the box, has nodes at most two
+ * cells away from the box; trimming may move a vertex by another 3/4 of a cell, into cells half as
+ * large. For a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
 /* The margin of a probe's points, in cubes: rounding moves particles by less. */
@@ -105,8 +105,8 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
 
 /* Writes the sides of the box from `low` to `high` in halves of a cube: centres of cells of all
  * levels are whole numbers of halves. With several levels, large cells stick out of the lattice.
- * Therefore, if `sides` is NULL, or a side is the lattice's, the side is put at the period's end,
- * or at infinity. */
+ * Therefore a side of the box that is also a side of the lattice is put at the period's end or,
+ * without a period, beyond all cells. If `sides` is NULL, this is done with both sides. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {

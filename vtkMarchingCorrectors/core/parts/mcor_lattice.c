@@ -175,10 +175,10 @@ static mcor_status mcor_fit_period(
 /* The least length of the longest edge is 1 - 1 / MCOR_STEP_RANGE cubes. */
 #define MCOR_STEP_RANGE 16
 
-/* Chooses the edges in fixed-point units. Positions are numbers of units, so distances are
- * right if the edges have the same ratios as their numbers of units. For the longest edge,
- * tries the greatest 1 / MCOR_STEP_RANGE of all possible numbers. Takes the number with the best
- * ratios, which are right to about 1e-8. */
+/* Chooses the edges in fixed-point units. Positions are numbers of units, so distances are right if
+ * the edges have the same ratios as their numbers of units. For the longest edge, tries the
+ * greatest 1 / MCOR_STEP_RANGE of all possible numbers, but at most MCOR_STEP_TRIES of them. Takes
+ * the number with the best ratios, which are right to about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;
@@ -255,8 +255,8 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
     --top;
   }
   lattice->levels = top + 1;
-  /* With adaptive cubes, the lattice begins at a multiple of `unit`, a brick one level above the
-   * highest, with space for one more such brick. */
+  /* With adaptive cubes, the origin is a multiple of `unit`, the edge of a brick one level above
+   * the highest. There is room for one such brick below the lowest node. */
   const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)

@@ -42,12 +42,13 @@ struct mcor_cap_points
   mcor_buffer eigenvalues;
 };
 
-/* Adds a point to the batch, at an offset (NULL: 0) from a node. Evaluates the batch if it is full.
- * `points` that are all zero, except for `take` and `data`, hold no point yet. */
+/* Adds a point to the batch, at an offset (NULL: 0) from a node. to: the caller's number of the
+ * point, for `take`. Evaluates the batch if it is full. `points` that are all zero, except for
+ * `take` and `data`, hold no point yet. */
 mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* points, const cl_int node[3],
   const double offset[3], int64_t to);
-/* Evaluates the points of the last, unfilled batch, and frees the batch. Returns `status` or, if that
- * is MCOR_OK, the first failure. */
+/* Evaluates the points of the last, unfilled batch, and frees the batch. Returns `status` or, if
+ * `status` is MCOR_OK, the first failure. */
 mcor_status mcor_end_cap_points(mcor_context* context, mcor_cap_points* points, mcor_status status);
 /* Returns the trim margin of point i: above 0 if the point remains after trimming. */
 double mcor_cap_margin(const mcor_context* context, const mcor_cap_points* points, int64_t i);
@@ -152,8 +153,8 @@ bool mcor_makes_caps(const mcor_context* context);
 /* Whether a cap closes this side of this call's box. */
 bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
 
-/* Finds the bricks of `nodes`, whose axes and ranges are set; fails if they are too many.
- * iso_value: in the caller's unit. */
+/* Finds the bricks of `nodes`. The axes and ranges of `nodes` must be set. Fails if there are too
+ * many bricks. iso_value: in the caller's unit. */
 mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes);
 /* Copies the masks of the marched bricks to the bricks of `nodes`. */
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes);
@@ -232,8 +233,8 @@ typedef mcor_status (*mcor_clip_side)(
 typedef mcor_status (*mcor_add_clipped)(void* data, const mcor_cap_corner* corners, int count);
 /* Adds what trimming leaves of a polygon: for each run of corners that remain, a polygon of the run
  * and the cuts before and behind it. If all corners remain, the polygon begins with corner `first`.
- * MCOR_POLYGON_MOST: the most corners, of a band between two iso lines that has all nodes of a
- * square and all vertices of both lines. */
+ * MCOR_POLYGON_MOST: the most corners of a polygon. A band between two iso lines may have the 4
+ * nodes of a square and 4 vertices of each line. */
 #define MCOR_POLYGON_MOST 12
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);

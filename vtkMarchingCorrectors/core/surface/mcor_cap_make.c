@@ -331,8 +331,8 @@ static mcor_status mcor_visit_cap_square(
 #define MCOR_PLACE_ROOT 1e-6
 
 /* Moves a cut within its bracket, unless its margin is 0 up to rounding. If an end of the bracket
- * stays twice, the margin at this end is halved, so that the end soon moves (the Illinois
- * method). */
+ * stays in two successive moves, the margin at this end is halved, so that the end soon moves (the
+ * Illinois method). */
 static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {

@@ -38,8 +38,8 @@ typedef struct mcor_download
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 
-/* Numbers the vertices that triangles use, or all vertices: scanned[v] becomes the number of such
- * vertices before v. */
+/* Numbers the vertices that triangles use or, if `all` is set, all vertices. scanned[v] becomes the
+ * number of such vertices before v, *count the number of all of them. */
 static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -368,7 +368,8 @@ static mcor_status mcor_deliver_triangles(mcor_download* d)
   return MCOR_OK;
 }
 
-/* Appends the mesh's triangles, and its `count` output vertices with attributes, to the surface. */
+/* Appends to the surface the mesh's triangles, and the `count` vertices of the mesh that go to the
+ * output, with their attributes. */
 static mcor_status mcor_deliver(mcor_download* d, const mcor_input* input, int count)
 {
   mcor_context* context = d->context;
@@ -391,8 +392,8 @@ static mcor_status mcor_deliver(mcor_download* d, const mcor_input* input, int c
   return MCOR_OK;
 }
 
-/* Whether the output still needs particles on the device, e.g. for components beyond the limit,
- * which are evaluated at the vertices of the finished mesh. */
+/* Whether the output still needs particles on the device, e.g. for attribute components beyond
+ * MCOR_ATTRIBUTE_LIMIT, which are evaluated at the vertices of the finished mesh. */
 bool mcor_output_evaluates(const mcor_context* context)
 {
   return context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT ||

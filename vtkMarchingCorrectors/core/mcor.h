@@ -73,7 +73,7 @@ extern "C"
 
   /* Writes an interface's word for a slot, such as "--cube-size", into word [size]. value: what
    * stands behind the name in the slot, or "". Returns 0 if there is no word, else another number.
-   * Without a word, a member's own name is written, and a slot that names no member stays as it is,
+   * If it returns 0, mcor_member_word gives the word; a slot that names no member stays as it is,
    * with its braces. */
   typedef int (*mcor_word)(
     void* user, const char* name, const char* value, char* word, size_t size);
@@ -161,18 +161,20 @@ extern "C"
   typedef enum mcor_boundary_detection
   {
     MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
-    /* The smallest eigenvalue of the symmetric part of sum V (x_j - x) (outer product) grad W(x -
-     * x_j), the inverse of the renormalisation matrix (Marrone et al. 2010), summed over the
-     * particles of the trimming weight. Set vertex_threshold, too: 0.3 trims about where a weight
-     * of 0.5 does; 0.75 trims 0.9 smoothing lengths inside a flat surface. Near 0.5 the border is
-     * ragged. */
+    /* The smallest eigenvalue of the symmetric part of the matrix sum V (x_j - x) (outer product)
+     * grad W(x - x_j), over the particles of the trimming weight. This matrix is the inverse of the
+     * renormalisation matrix (Marrone et al. 2010). Set vertex_threshold, too: 0.3 trims about
+     * where a weight of 0.5 does; 0.75 trims 0.9 smoothing lengths inside a flat surface. Near 0.5
+     * the border is ragged. */
     MCOR_BOUNDARY_EIGENVALUE = 1
   } mcor_boundary_detection;
 
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
-    /* [count][components], finite unless an attribute; borrowed until return; NULL: constant */
+    /* [count][components]. Values must be finite, except in attributes, and where mcor_input.solid
+     * says otherwise. Not copied: keep the data until the call returns. NULL: see `memory`, then
+     * `constant`. */
     const void* data;
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */
@@ -201,7 +203,7 @@ extern "C"
   typedef struct mcor_input
   {
     int64_t count;        /* number of particles; 0 gives an empty surface */
-    mcor_array positions; /* [count][3], length unit L, data must not be NULL */
+    mcor_array positions; /* [count][3], length unit L; data or memory must be given */
 
     /* Smoothing length, unit L, > 0; or the kernel's support radius, if
      * smoothing_length_is_support_radius is set. With estimate_smoothing_length the array is not
@@ -229,9 +231,10 @@ extern "C"
     mcor_array volume, mass, density;
 
     /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. If it has 2 or more components,
-     * scalar_component selects one of them, MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data
-     * is not NULL, A is the dot product of the two vectors. Values above about 1e30 need double
-     * precision; values above 1e290 need another unit. */
+     * scalar_component selects one of them, MCOR_MAGNITUDE the Euclidean norm. If scalar_dot has
+     * data or memory, A is the dot product of `scalar` and scalar_dot, which must have equally many
+     * components. Values above about 1e30 need double precision; values above 1e290 need another
+     * unit. */
     mcor_array scalar;
     int scalar_component;
     mcor_array scalar_dot;
@@ -272,8 +275,8 @@ extern "C"
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
-  /* Arrays that a surface or samples carry besides points and triangles, by their names in
-   * mcor_surface and mcor_samples. */
+  /* Arrays that a surface or samples may have besides points and triangles. Each is named after its
+   * member of mcor_surface and mcor_samples. */
   typedef enum mcor_output
   {
     MCOR_OUT_NORMALS = 1,
@@ -313,7 +316,7 @@ extern "C"
     /* Highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24. mcor_probe and
      * mcor_derive do not read it. */
     int level_limit;
-    /* [iso_count], finite, above 0 with MCOR_WEIGHT_SUM; none give an empty surface */
+    /* [iso_count], finite, above 0 with MCOR_WEIGHT_SUM; iso_count 0: an empty surface */
     const double* iso_values;
     int iso_count;
     /* Cells with a node whose weight is below this are discarded; default 0.1. With MCOR_SHEPARD,
@@ -327,8 +330,8 @@ extern "C"
     double vertex_threshold;
     /* Above 0: any surface, even a free surface, also ends where the solids' share of the weight
      * exceeds this, unless solids are ignored; 0.5: where solids weigh more than the fluid. 0: the
-     * surface does not end at solids. Or MCOR_WALL_SHARE_AUTO (default) or
-     * MCOR_WALL_SHARE_MEASURED. */
+     * surface does not end at solids. MCOR_WALL_SHARE_AUTO is the default, MCOR_WALL_SHARE_MEASURED
+     * another choice. */
     double wall_share;
     int preview; /* nonzero: vertices by linear interpolation, no correction */
     /* In two dimensions, nonzero: triangles fill the region above the lowest iso value within the

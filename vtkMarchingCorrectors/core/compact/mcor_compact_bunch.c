@@ -134,8 +134,7 @@ static void mcor_join_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Makes a list of vertices for each bunch. The order of a list may differ from run to run, which
- * has no effect. */
+/* Makes a list of vertices for each bunch. The order may differ between runs, without effect. */
 static void mcor_list_vertices(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_bunch_vertex* of = ((const mcor_bunches*)data)->of;

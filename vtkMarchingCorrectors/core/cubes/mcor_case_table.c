@@ -86,8 +86,7 @@ static void mcor_trace_loops(int cube_case, int joined, mcor_loops* loops)
 /* Allows diagonals in each ambiguous face, between two opposite edges of the face. A face has two
  * such pairs of edges: one cell at the face uses one pair, the other cell the other pair. The sign
  * of the face's lowest corner decides which cell uses which pair. By this rule, a cell makes the
- * same choice in all three faces around a corner; with different choices, few tunnels could be
- * made. */
+ * same choice in all three faces around a corner; otherwise few tunnels could be made. */
 static void mcor_allow_diagonals(int cube_case, mcor_adaptive_loop* loop)
 {
   for (int i = 0; i < loop->length; ++i)
@@ -175,8 +174,7 @@ typedef struct mcor_strip
   uint8_t path[3 * 24], best[3 * 24]; /* slots of triangles */
 } mcor_strip;
 
-/* Returns the squared distance of two vertices, in half edges of the cell; much more if both are in
- * one face. */
+/* Returns two vertices' squared distance, in half cell edges; much more if both are in one face. */
 static int mcor_side_cost(const mcor_strip* strip, int i, int j)
 {
   int cost = (strip->first.facets[i] & strip->second.facets[j]) >> 24 ? 1000 : 0;

@@ -26,8 +26,7 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
 }
 
 /* Finds on which side of the iso value the nodes are, in all bricks with a bit in `evaluated`. The
- * nodes with bits in `evaluated` become known: their values are new, or from an earlier iso
- * value. */
+ * nodes with bits in `evaluated` become known. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   const mcor_brick_data* now = &context->bricks.now;

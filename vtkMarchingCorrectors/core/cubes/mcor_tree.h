@@ -11,8 +11,7 @@
 #include "mcor_internal.h"
 
 /* MCOR_LEAF_LIMIT: the most leaves. MCOR_SPLIT_LIMIT: the most split bricks. A split brick has 8
- * parts, which are leaves unless they are split, too: each split brick adds at least seven
- * leaves. */
+ * parts. Each is a leaf or is split, too, so each split brick adds at least seven leaves. */
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
@@ -63,8 +62,7 @@ static inline uint64_t mcor_bricks_between(
 /* Returns the level of a particle: the largest level L up to `top` with 2^L h_min <= h. */
 int mcor_tree_level_of(double h, double h_min, int top);
 
-/* The number of clusters, or other elements, that the host treats between two reports of
- * progress. */
+/* How many clusters or other elements the host treats between two reports of progress. */
 #define MCOR_TREE_STEP 4096
 
 /* Begins a tree of the lattice, and numbers the blocks of all levels up to the level above the

@@ -44,9 +44,8 @@ typedef struct mcor_splitter
   int level, first[3], last[3];
 } mcor_splitter;
 
-/* Returns the mask of those `bricks` of a cluster that a particle reaches. First drops whole layers
- * of bricks that are too far away along one axis, then compares the distances of the other
- * bricks. */
+/* Returns the mask of those `bricks` of a cluster that a particle reaches. First drops layers of
+ * bricks that are too far away along one axis, then compares the distances of the others. */
 static uint64_t mcor_reached_bricks(
   const mcor_tree_job* job, const mcor_splitter* p, const int cluster[3], uint64_t bricks)
 {

@@ -110,7 +110,7 @@ static mcor_status mcor_enqueue_part(
 
 /* Launches all work-items in parts. The work of an item grows with the number of particles that
  * reach a point. On the built-in device parts cost nothing, so each launch begins with small parts,
- * and no part becomes large. A driver may compile a kernel once more for parts that do not begin at
+ * and no part becomes large. A driver may compile a kernel once more for a part that begins behind
  * item 0. */
 static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)

@@ -16,8 +16,7 @@ typedef struct mcor_sight
   int count;
 } mcor_sight;
 
-/* Lets the host see an input's arrays until mcor_end_sight. Call mcor_end_sight after a failure,
- * too. */
+/* Lets the host see an input's arrays. Call mcor_end_sight afterwards, even after a failure. */
 mcor_status mcor_see_input(mcor_context* context, const mcor_input* input, mcor_sight* sight);
 void mcor_end_sight(mcor_sight* sight);
 

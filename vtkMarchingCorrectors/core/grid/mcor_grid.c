@@ -94,8 +94,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   return base;
 }
 
-/* Makes room for an element of each particle, and writes zeros behind them, which vector loads may
- * read. */
+/* Makes room for one element per particle. Writes zeros behind, which vector loads may read. */
 static mcor_status mcor_reserve_padded(
   mcor_context* context, mcor_buffer* buffer, int count, size_t size)
 {
@@ -350,9 +349,9 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
     MCOR_INT(to_row));
 }
 
-/* Copies the scalar A, less a shift A0, to the sorted particles; does nothing for a weight sum.
- * Only a Shepard mean has a shift other than 0: the mean shifts with its values, so A - A0, with A0
- * near most values, keeps the digits of a scalar with a large offset or a few huge peaks. */
+/* Copies the scalar A, less a shift A0, to the sorted particles; with a weight sum, only sets A0 to
+ * 0. For a Shepard mean A0 is near most values, else A0 is 0. A Shepard mean shifts with its
+ * values, so A - A0 keeps the digits of a scalar with a large offset or a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;

@@ -176,8 +176,7 @@ mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int c
   return MCOR_OK;
 }
 
-/* Returns the most buckets for `keys` keys, so that memory stays in proportion to the number of
- * keys. */
+/* Returns the most buckets for `keys` keys. Memory stays in proportion to the number of keys. */
 uint64_t mcor_most_buckets(int keys)
 {
   const uint64_t most = 4 * (uint64_t)keys + (1 << 20);

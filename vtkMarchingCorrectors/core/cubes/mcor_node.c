@@ -13,8 +13,9 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count, lanes = context->cl.lanes;
   const mcor_space* space = &context->space;
-  /* A work-item with several lanes, which share the gathered particles, evaluates a brick; with one
-   * lane, a node. In a plane, a brick has 16 nodes, and a work-item evaluates one node per lane. */
+  /* If a work-item has several lanes, which share the gathered particles, it evaluates a brick;
+   * else it evaluates a node. In a plane, a brick has 16 nodes, and a work-item evaluates one node
+   * per lane. */
   const int items = space->flat || lanes == 1 ? space->brick_nodes / lanes : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),

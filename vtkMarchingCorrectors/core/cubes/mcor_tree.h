@@ -73,14 +73,14 @@ static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 {
   return tree->lattice->rungs[tree->top + 2].base * MCOR_BLOCK_BRICKS;
 }
-/* Finds the position of a brick, or, with a period, of its image in the first period. Returns false
- * if the brick is off the lattice. */
+/* Sets `placed` to the position of a brick or, with a period, of its image in the first period.
+ * Returns false if the brick is off the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
 /* Whether all bricks of a cluster are on the lattice or, with a period, in the first period. first:
  * the position of the cluster's first brick. */
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
-/* Adds a brick, or its image in the first period, to a set as mcor_set_add does; a brick off the
- * lattice is left out. */
+/* Adds a brick, or its image in the first period, to a set, unless the brick is off the lattice.
+ * Returns false in the same cases as mcor_set_add. */
 bool mcor_set_add_brick(const mcor_tree* tree, int level, const int brick[3], mcor_brick_set* set);
 /* Fails unless `fit` is set: there may be too many leaves, or memory for them ran out. */
 mcor_status mcor_leaves_fit(mcor_context* context, bool fit);

@@ -1,28 +1,30 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Integrates an SPH kernel along lines of sight, and over rectangles across them, and keeps the
- * integrals in a table. Uses only operations that all processors round alike. */
+/* Integrates an SPH kernel along the line of sight, then over rectangles of the image, and keeps
+ * the integrals in a table. Uses only operations that all processors round alike. */
 
 #include "mcor_plane.h"
 #include "mcor_project.h"
 
 #include <stdlib.h>
 
-/* How many cells the table has from the centre to the end of the support. The fine table serves if
- * pixels are smaller than MCOR_SMALL_PIXEL times the greatest h. Errors fall at least with the
- * third power of a cell's size: if h is 3 pixels, errors are about 1e-8 of the greatest value; if h
- * is 50 pixels, below 1e-6. */
+/* MCOR_COLUMN_CELLS, MCOR_COLUMN_FINE_CELLS: how many cells the table has along an axis, from the
+ * centre to the end of the support. The fine table serves if the shorter side of a pixel is below
+ * MCOR_SMALL_PIXEL times the greatest h. Errors fall at least with the third power of a cell's
+ * size: if h is 3 pixels, errors are about 1e-8 of the greatest value; if h is 50 pixels, below
+ * 1e-6. MCOR_PROFILE: how many steps job->profile has over the support. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
 #define MCOR_PROFILE 2048
-/* Kernels change to another polynomial only at multiples of this, in h. */
+/* SPH kernels have kinks, where two polynomials meet, only at multiples of this number, in h. */
 #define MCOR_KINK 0.5
 #define MCOR_KINKS 16 /* room for the kinks on a line of sight through a tensor kernel */
 
-/* Gauss quadrature from 0 to 1, with MCOR_CELL_POINTS points in a cell, and MCOR_LINE_POINTS points
- * in a piece of a line of sight, which is exact for products of three cubic polynomials. */
+/* Gauss quadrature from 0 to 1: the points and their weights. A cell of the table has
+ * MCOR_CELL_POINTS points along an axis. A piece of a line of sight has MCOR_LINE_POINTS points,
+ * with which the integral of a product of three cubic polynomials is exact. */
 #define MCOR_CELL_POINTS 4
 static const double mcor_cell_at[MCOR_CELL_POINTS] = { 0.069431844202973712388,
   0.33000947820757186760, 0.66999052179242813240, 0.93056815579702628761 };
@@ -54,7 +56,8 @@ double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])
     : support;
 }
 
-/* Returns the integral of a tensor kernel along the line of sight through (x, y) of the image. */
+/* Returns the integral of a tensor kernel of h = 1 along a line of sight. x, y: where the line
+ * crosses the image, from the kernel's centre. */
 static double mcor_integrate_tensor(const mcor_column_job* job, double x, double y)
 {
   double from[3], kinks[MCOR_KINKS], sum = 0;
@@ -87,8 +90,8 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
   return sum;
 }
 
-/* Returns the column density at (x, y). The unit is arbitrary, because mcor_fill_nodes normalizes
- * the table. */
+/* Returns the column density of a kernel of h = 1 at (x, y) from its centre; in two dimensions,
+ * returns the kernel itself. The unit is arbitrary: mcor_fill_nodes normalizes the table. */
 static double mcor_density_at(const mcor_column_job* job, double x, double y)
 {
   if (!job->column->is_radial)
@@ -111,8 +114,9 @@ static double mcor_density_at(const mcor_column_job* job, double x, double y)
       t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
-/* Writes to job->profile the integrals of w(sqrt(r^2 + z^2)) over z > 0. Pieces of an integral grow
- * with z. No piece extends beyond a place where w changes to another polynomial. */
+/* Writes to job->profile, for radii r, the integrals of w(sqrt(r^2 + z^2)) over z > 0. The range of
+ * z is divided into pieces, which are longer for larger z. No piece extends beyond a place where w
+ * changes to another polynomial. */
 static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_column_job* job = data;
@@ -142,9 +146,9 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
   (void)slice;
 }
 
-/* Returns place i where the density is evaluated along an axis: the nodes come first, then the
- * quadrature points of each cell. *length: how long a cell is at this place. Cells of radial
- * kernels are shorter near the centre, where the density may have a cusp. */
+/* Along an axis, the density is evaluated at the nodes, then at the quadrature points of each cell.
+ * Returns the coordinate of evaluation i, in h. *length: the cell's length at this coordinate.
+ * Cells of radial kernels are shorter near the centre, where the density may have a cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];
@@ -287,7 +291,7 @@ void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, 
   {
     const double *p = lower + 4 * sides[i].cell, *q = upper + 4 * sides[i].cell;
     const double* w = sides[i].weight;
-    /* Values and slopes along x, at both ends of the cell. */
+    /* a0, a2: E at the lower and the upper end of the cell along x. a1, a3: dE/dx at these ends. */
     const double a0 = v0 * p[0] + v1 * p[2] + v2 * q[0] + v3 * q[2];
     const double a1 = v0 * p[1] + v1 * p[3] + v2 * q[1] + v3 * q[3];
     const double a2 = v0 * p[4] + v1 * p[6] + v2 * q[4] + v3 * q[6];

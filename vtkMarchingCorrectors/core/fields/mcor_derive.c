@@ -81,7 +81,8 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     }
     if (context->space.axes == 2)
     {
-      /* The third axis is empty. This entry hardly changes the condition of the other two axes. */
+      /* In two dimensions, the third row and column of M are 0. An entry of the size of the other
+       * entries makes M invertible, and hardly changes its condition. */
       m[2][2] =
         sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));
     }

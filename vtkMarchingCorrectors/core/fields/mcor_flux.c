@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Fluxes through sections: integrals of the Shepard means of velocity and density, over the area
- * where the weight sum is at least the level. Each piece of a section is integrated in two ways. In
- * fluid, two quadrature rules use the same samples. A piece that the level crosses is once cut
- * along one straight line, and once divided into parts that are each cut in this way. If the two
- * results differ, the piece is halved. */
+/* Fluxes through sections: integrals of v . n and rho v . n over the area where the weight sum is
+ * at least the level. v, rho: the Shepard means of velocity and density; n: the section's normal.
+ * Each piece of a section is integrated in two ways. In fluid, two quadrature rules use the same
+ * samples. A piece that the level crosses is once cut along one straight line, and once divided
+ * into parts that are each cut in this way. If the two results differ, the piece is halved. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
@@ -14,24 +14,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longest side of a cell, in smallest scaled smoothing lengths. */
+/* The longest side that a cell may have, as a multiple of the smallest scaled smoothing length. */
 #define MCOR_FLUX_CELL 0.75
 /* MCOR_FLUX_MOST: the most cells near particles, in all sections together. MCOR_FLUX_MOST_ALONG:
  * the most cells along a side of a piece; doubles can then tell the corners of cells apart. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 1e15
-/* A piece's accuracy is relative to its greatest speed and density. Each of the two counts as at
- * least this share of the greatest among all particles, which decides how means are rounded. */
+/* A piece's accuracy is relative to the greatest speed and the greatest density in the piece. Each
+ * of the two counts as at least this share of the greatest value among all particles, because this
+ * greatest value decides how the device rounds means. */
 #define MCOR_FLUX_FLOOR 0.0625
-/* Sums have room for this many times area times greatest speed times greatest density. M'4, which
- * has weights below 0, makes sums a little larger than this product. */
+/* A sum has room for this many times the product of the section's area, the greatest speed and the
+ * greatest density. M'4, which has weights below 0, makes sums a little larger than the product. */
 #define MCOR_FLUX_ROOM 8
-/* Greatest difference between the two results of a piece, relative to its area times the scale in
- * mcor_settle_piece. In a piece that is small beside the section (MCOR_FLUX_SMALL), the difference
- * may be greater, because errors of many pieces cancel. */
+/* A piece is accurate enough if its two results differ by at most MCOR_FLUX_TOLERANCE times the
+ * scale in mcor_settle_piece times an area. This area is the piece's area or, if larger,
+ * MCOR_FLUX_SMALL times the geometric mean of the piece's area and of the section's area near
+ * particles, because errors of many small pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
-/* The most halvings of a cell: of any, and of one that the level may cross between its samples. */
+/* MCOR_FLUX_DEPTH: how often a cell is halved at most. MCOR_FLUX_UNCLEAR_DEPTH: how often a cell is
+ * halved at most for the sole reason that the level may cross it between its samples. */
 #define MCOR_FLUX_DEPTH 24
 #define MCOR_FLUX_UNCLEAR_DEPTH 12
 /* The second derivative of a weight is about 4 / h^2. So the weight between two samples may differ
@@ -107,8 +110,9 @@ static void mcor_place_sample(
   }
 }
 
-/* Takes pieces until the batch is full. Halves pieces that are longer than a cell. Drops pieces that
- * are far from all particles, and pieces that belong to another rank. */
+/* Fills job->batch with pieces, and sets *count to their number; 0: all pieces are done. Halves
+ * pieces that are longer than a cell. Drops pieces that are far from all particles, and cells that
+ * belong to another rank. */
 static mcor_status mcor_take_pieces(mcor_flux_job* job, int* count)
 {
   mcor_context* context = job->base.context;
@@ -171,9 +175,9 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
   return mcor_sample_level(&job->base, job->weight, samples);
 }
 
-/* Adds the integrals over the part of a triangle or line that is in fluid. corner: the samples of a
- * piece that are the corners. Between the corners, weights and values count as linear. Returns
- * whether the level cuts the triangle or line. */
+/* Adds to `sum` the integrals over the part of a triangle or line that is in fluid. corner: the
+ * samples of a piece that are the corners. size: the area or length. Between the corners, weights
+ * and values count as linear. Returns whether the level cuts the triangle or line. */
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
 {
@@ -189,7 +193,8 @@ static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const doub
   }
   const int lone = corners == 3 ? lone_corner[inside] : 0, from = corner[lone];
   const bool is_cut = inside != 0 && inside != (1 << corners) - 1;
-  /* Means over the triangle or line, and over the tip at corner `from` that the level cuts off. */
+  /* mean: means over the triangle or line. tip: means over the part that the level cuts off at
+   * corner `from`. share: this part's share of the size. */
   double tip[MCOR_FLUX_SUMS], mean[MCOR_FLUX_SUMS], share = is_cut ? 1 : 0;
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
@@ -275,7 +280,7 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
   const double length = piece->length / job->smoothing_length;
   const bool may_be_cut = !is_cut && nearest < MCOR_FLUX_BEND * length * length;
   bool is_settled = !may_be_cut || piece->depth > MCOR_FLUX_UNCLEAR_DEPTH, is_halved = false;
-  /* How large each sum may be for a unit of area. */
+  /* How large each integral over the piece may be per unit of area. */
   const double scale[MCOR_FLUX_SUMS] = { 1, speed, speed * dense };
   for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
   {
@@ -293,8 +298,8 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
   return MCOR_OK;
 }
 
-/* Adds up all sections. The first pass only counts cells, and fails if there are too many, before
- * time is spent on any of them. */
+/* Adds up the pieces of all sections. The first pass only counts cells, and fails if there are too
+ * many, before time is spent on any of them. */
 static mcor_status mcor_add_fluxes(mcor_level_job* base)
 {
   mcor_flux_job* job = (mcor_flux_job*)base;

@@ -23,7 +23,7 @@ typedef struct mcor_flux_piece
   double length;       /* length of the longest side */
 } mcor_flux_piece;
 
-/* Results of a section. Sums are whole numbers of units, so their order does not matter. */
+/* Results of a section. Sums are whole numbers of units, so the order of adding does not matter. */
 typedef struct mcor_flux_section
 {
   double area, near; /* area of the whole section; area of its cells near particles */
@@ -71,7 +71,7 @@ typedef struct mcor_flux_job
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
 mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number);
 
-/* mcor_flux.c. Finds the piece's size and its longest side. */
+/* mcor_flux.c. Sets the size of a piece, its longest side, and the length of this side. */
 void mcor_measure_piece(const mcor_flux_job* job, mcor_flux_piece* piece);
 
 #endif

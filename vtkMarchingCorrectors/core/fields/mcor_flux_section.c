@@ -49,7 +49,8 @@ mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number)
   return mcor_label_of(job->sections[number].name, number);
 }
 
-/* Appends a triangle or, if y = z, a line, in the caller's coordinates. normal: has length 1. */
+/* Appends to section `number` the triangle x, y, z or, if y = z, the line from x to y. Corners and
+ * normal are in the caller's coordinates. normal: has length 1. */
 static mcor_status mcor_add_triangle(mcor_flux_job* job, int64_t number, const double x[3],
   const double y[3], const double z[3], const double normal[3])
 {
@@ -82,7 +83,7 @@ static mcor_status mcor_leaves_plane(const mcor_flux_job* job, int64_t number)
     mcor_label_section(job, number).text, 'x' + job->across, job->plane->at);
 }
 
-/* Appends a line along an edge from a corner. */
+/* Appends the line from `corner` to corner + along. */
 static mcor_status mcor_add_line(mcor_flux_job* job, int64_t number, const double corner[3],
   const double along[3], const double normal[3])
 {
@@ -90,7 +91,9 @@ static mcor_status mcor_add_line(mcor_flux_job* job, int64_t number, const doubl
   return mcor_add_triangle(job, number, corner, end, end, normal);
 }
 
-/* Appends a rectangle; in two dimensions, the line along which it crosses the plane. */
+/* Appends a rectangle or, in two dimensions, the line along which the rectangle crosses the plane,
+ * if it does. Fails in two dimensions unless one edge is parallel to the plane and the other edge
+ * is perpendicular to the plane. */
 static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const double corner[3],
   const double edges[2][3], const double normal[3])
 {
@@ -136,7 +139,8 @@ static bool mcor_find_edges(const double x[9], double sign, double edges[2][3], 
   return mcor_normalise(normal) > 0;
 }
 
-/* Appends a disc; in two dimensions, the line along which it crosses the plane. */
+/* Appends a disc or, in two dimensions, the line along which the disc crosses the plane, if it
+ * does. Fails in two dimensions unless the disc is perpendicular to the plane. */
 static mcor_status mcor_add_disc(
   mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
 {
@@ -192,8 +196,8 @@ static mcor_status mcor_add_disc(
 }
 
 /* Appends the pieces of a section, whose number of points is checked already. *has_size becomes
- * false if the section has no area or, if it consists of lines, no length. In two dimensions, area
- * outside of the plane counts, too. */
+ * false if the section has no area or, if it consists of lines, no length. In two dimensions, a
+ * rectangle or disc has a size even if it does not cross the plane. */
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];

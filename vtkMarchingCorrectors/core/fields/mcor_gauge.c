@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges: where lines cross the free surface. All lines go through each step together, so the device
- * has many points at a time.
+/* Gauges: where lines cross the free surface. All lines go through each step together, so the
+ * device has many points at a time.
  *
  * Samples are a quarter of a smoothing length apart. Over this distance, the weight sum is almost a
- * parabola. If the middle one of three samples is an extremum, the parabola through the samples
- * goes beyond the middle one by at most an eighth of the greater difference between the samples. To
- * be safe, half of this difference is assumed: if the weight sum may so reach the level, this part
- * of the line is sampled more finely.
+ * parabola. If the middle one of three samples is an extremum, the parabola's own extremum goes
+ * beyond this sample by at most an eighth of the greater difference between the samples. To be
+ * safe, half of this difference is assumed. Where the extremum may then be beyond the level, the
+ * line is sampled more finely.
  *
  * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
  * these samples, and the crossings between each sample and the next. The rank has the particles
@@ -22,13 +22,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Samples treated together. */
+/* About this many samples are treated together. */
 #define MCOR_GAUGE_TOGETHER (1 << 20)
 /* The field is evaluated up to this many steps beyond the box. */
 #define MCOR_GAUGE_MARGIN 2.5
 #define MCOR_GAUGE_STEP 0.25 /* in smallest scaled smoothing lengths */
 #define MCOR_GAUGE_LEAST_STEPS 4
-/* The most samples of a line; the most steps, so that doubles can tell places on a line apart. */
+/* MCOR_GAUGE_MOST: the most samples of a line that are evaluated. MCOR_GAUGE_MOST_STEPS: the most
+ * steps of a whole line, so that doubles can tell its samples apart. */
 #define MCOR_GAUGE_MOST (1 << 26)
 #define MCOR_GAUGE_MOST_STEPS 4e15
 #define MCOR_GAUGE_FINER 16   /* sections of a part with an extremum */
@@ -60,8 +61,8 @@ typedef struct mcor_gauge_row
   const double* weight; /* [count] */
 } mcor_gauge_row;
 
-/* A place on a line. In job->records, a place is where the line crosses the level; a negative place
- * tells one of these two facts. */
+/* A place on a line. In job->records, a place from 0 to 1 is where the line crosses the level. The
+ * two places below 0 tell other facts about the line. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
 typedef struct mcor_gauge_place
@@ -72,7 +73,7 @@ typedef struct mcor_gauge_place
 
 typedef MCOR_LIST(mcor_gauge_place) mcor_gauge_places;
 
-/* A call under way: its arguments, then its results. */
+/* A call of mcor_gauge that is under way. */
 typedef struct mcor_gauge_job
 {
   mcor_level_job base;          /* must be first */
@@ -208,7 +209,8 @@ static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
   return i + 1 == row->count ? row->last : row->first + (double)i * row->step;
 }
 
-/* Whether this call owns place i of a row. */
+/* Whether this call owns place i of a row. In a row of samples, a call with a box owns the places
+ * in the box's cells. Otherwise the call owns all places. */
 static bool mcor_owns_place(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
 {
   double point[3];
@@ -274,9 +276,10 @@ static mcor_status mcor_scan_row(
   return MCOR_OK;
 }
 
-/* Divides parts into sections, and replaces them by the sections with a crossing or a suspect
- * extremum. If a suspect part has crossings, its sections with a crossing go to job->changed, and
- * its suspect extrema are dropped. one: each part keeps only its first crossing. */
+/* Divides each of `parts`, which are job->changed or job->suspects, into sections. Replaces the
+ * parts by their sections with a crossing or, for job->suspects, with an extremum that may be
+ * beyond the level. If a part of job->suspects has crossings, its sections with a crossing go to
+ * job->changed, and its other sections are dropped. one: a part keeps only its first crossing. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {

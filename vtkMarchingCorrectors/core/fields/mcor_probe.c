@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points on the device at a time. Points near each other are evaluated together; in a smaller batch
- * of unordered points, fewer points would be near each other. */
+/* The most points on the device at a time. Points near each other are evaluated together; in a
+ * smaller batch of unordered points, fewer points would be near each other. */
 #define MCOR_PROBE_BATCH (1 << 18)
 
 /* Where the fluid's weight is not above this, a mean has no correct digits, and the point is not
@@ -71,7 +71,8 @@ static void mcor_read_points(
   }
 }
 
-/* Writes nodes and offsets of points; the node is -1 if no particle may reach the point. */
+/* Writes each point's node, the lower corner of its lattice cell, and its offset from the node, in
+ * edges of the cell. Outside of the lattice, where no particle reaches, the node is -1. */
 static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_probe_run* run = data;
@@ -368,7 +369,8 @@ mcor_status mcor_finish_field(mcor_context* context)
   return mcor_finish_statistics(context);
 }
 
-/* Runs a call. In two dimensions, turns the points into the plane z = 0, and the gradients back. */
+/* Runs a call of mcor_probe. In two dimensions, turns the points into the plane z = 0, and the
+ * gradients back to the caller's axes. */
 static mcor_status mcor_run_probe(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -410,7 +412,8 @@ static mcor_status mcor_run_probe(
   MCOR_THEN(status, context->grid.count > 0 ? mcor_probe_all(&run) : MCOR_OK);
   mcor_release_probe(&run);
   free(flat);
-  /* Keeps the attributes on the device for the next probe, if all of them fit at once. */
+  /* The attributes stay on the device for the next probe if all of them fit at once and are finite,
+   * and if this call has no globals. */
   bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !options->globals;
   for (int a = 0; a < input->attribute_count; ++a)
   {
@@ -431,9 +434,10 @@ static mcor_status mcor_run_probe(
   return mcor_finish_field(context);
 }
 
-/* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the free
- * surface. It uses solids only if volumes are computed, in which solids count, and the caller's
- * field is not the weight sum. Returns whether solids are used. */
+/* Sets the options of a call that evaluates arrays but no scalar: the field becomes the weight sum,
+ * and there are no iso values, caps, larger cubes or ranks. The box stays only with globals.
+ * Returns whether the call uses solids: it does if the caller's field is not the weight sum, solids
+ * are not ignored, and the device computes volumes, for which solids count. */
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
 {
   const bool uses_solids =

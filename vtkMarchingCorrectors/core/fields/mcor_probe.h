@@ -3,7 +3,7 @@
 #ifndef mcor_probe_h
 #define mcor_probe_h
 
-/* A probe under way. */
+/* A call of mcor_probe that is under way. */
 
 #include "mcor_input.h"
 
@@ -27,8 +27,7 @@ typedef struct mcor_probe_run
   int count, inside; /* numbers of points in the batch: all; those in reach */
 } mcor_probe_run;
 
-/* Lets the call use only particles near options->box, which holds the caller's points. Returns false
- * if there is no box. */
+/* If options has a box, the call uses only particles near the box. Returns whether it has one. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Writes sorted particles [first, first + count) to the batch as points. If the call has a box,
@@ -36,7 +35,7 @@ bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
   int count, bool has_box, const int cells[3], const int end[3]);
 
-/* Evaluates the attributes on the device at points [first, last). */
+/* Evaluates at points [first, last) the attributes that the device holds. Writes run->samples. */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
 /* Makes an array of zeros, [count][components][numbers], for each attribute; NULL for attributes
@@ -47,9 +46,9 @@ void mcor_free_arrays(double** arrays, int count);
 /* Ends a call that makes no surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 
-/* mcor_widen.c. Makes *volume, [count], unit L^3, in a plane L^2: the computed volumes, which are
- * found from the search grid's weights. Particles that are not on the device or not in the box get
- * 1. The caller frees *volume, even after a failure. */
+/* mcor_widen.c. Makes *volume, [count], from the weights in the search grid: the computed volumes,
+ * in unit L^3 or, in two dimensions, L^2. Particles that are not on the device or not in the box
+ * get 1. The caller frees *volume, even after a failure. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double** volume);
 
 #endif

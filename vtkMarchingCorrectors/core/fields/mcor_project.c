@@ -18,8 +18,9 @@
 
 /* ---- the image ---- */
 
-/* Chooses the axes of the image. With a line of sight along x, y or z, the image has the other two
- * axes, in this order. Otherwise z points up, or y if the line of sight is nearly along z. */
+/* Chooses the axes of the image. If the line of sight is along x, y or z, the image has the other
+ * two axes, in alphabetical order. Otherwise z points up in the image, or y if the line of sight is
+ * nearly along z. */
 static mcor_status mcor_choose_axes(mcor_project_job* job)
 {
   mcor_context* context = job->context;
@@ -108,8 +109,9 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Finds the sides of the image. The image shows the box or the period, seen along the line of
- * sight; without them, all that particles reach. *is_empty: the image has no extent. */
+/* Finds the sides and the pixels of the image. Along each axis, the image shows the box or, without
+ * a box, the period; if there is neither, the image shows all that particles reach. *is_empty: the
+ * image has no extent. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {
   mcor_context* context = job->context;
@@ -210,8 +212,9 @@ static mcor_status mcor_run_project(
   MCOR_FAIL_IF(!job->places_only && mcor_projects_density(input) && !mcor_is_given(&input->mass) &&
       !mcor_is_given(&input->density),
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NO_COLUMN_DENSITY));
-  /* Makes the search grid if it is needed: for volumes that are computed, or an estimated smoothing
-   * length. If not, forgets data of other particles that earlier calls kept. */
+  /* Makes the search grid if volumes are computed, or a smoothing length is estimated. Otherwise
+   * the search grid is not needed, and mcor_check_reuse forgets data that earlier calls kept of
+   * other particles. */
   const bool computes = mcor_needs_density(input) && !job->places_only &&
     (!mcor_projects_density(input) || !mcor_is_given(&input->mass) || job->channels == 2);
   bool is_empty = true;

@@ -84,7 +84,8 @@ typedef struct mcor_project_job
   mcor_findings slices[MCOR_SLICES];
 } mcor_project_job;
 
-/* Whether the image shows the density, from masses or from V times density. */
+/* Whether the image shows the density, because there is no scalar. The density comes from masses
+ * or, without masses, from volumes times densities. */
 static inline bool mcor_projects_density(const mcor_input* input)
 {
   return !input->scalar.data;

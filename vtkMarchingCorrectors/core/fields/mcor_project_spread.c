@@ -173,8 +173,8 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
 
 /* ---- the passes ---- */
 
-/* Spreads particles, with their periodic images, over the image. The first pass only counts them,
- * and finds the most that one of them adds to a pixel. */
+/* Spreads particles, with their periodic images, over the pixels. In the first pass, without locks,
+ * only counts the images of particles, and finds the most that one of them adds to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -226,7 +226,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
           }
         }
       }
-      /* A pixel's share of M'4, which is partly negative, may exceed 1, but not 2. */
+      /* M'4 is partly negative, so a pixel's share of this kernel may exceed 1, but not 2. */
       const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
       for (int c = 0; c < job->channels && found.sums[0] > before; ++c)
       {
@@ -245,8 +245,7 @@ static double mcor_rounding_unit(double number)
   return isfinite(number) ? ldexp(1.5, exponent + 2) : number;
 }
 
-/* Counts the particles' periodic images, and sets job->unit so that sums over all of them are
- * exact. */
+/* Counts particles and their periodic images, and sets job->unit so that all sums are exact. */
 static mcor_status mcor_count_splats(mcor_project_job* job)
 {
   mcor_context* context = job->context;

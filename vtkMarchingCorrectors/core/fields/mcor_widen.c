@@ -110,8 +110,8 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-/* Writes the factors in the input's order. If volumes were computed, writes the volumes, too, which
- * follow from the weights. */
+/* Writes the factors, if they are wanted, in the input's order, and which particles are outside of
+ * the surface. If volumes were computed, also writes the volumes, which follow from the weights. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_widen_run* run = data;
@@ -198,7 +198,7 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-/* Finds the factors of all particles. If there are no globals, the box does not limit this call: it
+/* Finds the factors of all particles. Without globals, the box does not limit this call: the box
  * only tells which particles are too far away to matter, see mcor_leave_out_far. Without particles,
  * no kernels are chosen, so there are no statistics. */
 static mcor_status mcor_run_widen(
@@ -254,7 +254,7 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   widening->count = input->count;
   widening->factor = mcor_make_ones(input->count);
   widening->outside = calloc((size_t)(input->count > 0 ? input->count : 0) + 1, 1);
-  /* Particles that are not on the device keep the 1, which nobody reads. */
+  /* Particles that are not on the device keep the volume 1, which nobody reads. */
   widening->volume = mcor_needs_density(input) ? mcor_make_ones(input->count) : NULL;
   mcor_status status = mcor_allocated(context,
     widening->factor && widening->outside && (widening->volume || !mcor_needs_density(input)));

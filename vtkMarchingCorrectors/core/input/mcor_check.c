@@ -17,7 +17,7 @@ mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, doub
     isnan(from) || isnan(to) ? "both must be numbers" : "the first must be lower than the second");
 }
 
-/* Refuses globals with values that no measurement yields. Ranges are empty without fluid. */
+/* Refuses globals with values that no measurement yields. Checks ranges only if there is fluid. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
   const mcor_measure* m = &g->measured;
@@ -34,7 +34,8 @@ static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals*
   return MCOR_OK;
 }
 
-/* The numbers that an option may have: from low to high, or the numbers of its words. */
+/* The legal values of an option: `low` to `high` or, with is_word, the number of one of its words,
+ * e.g. 0 or 1 for "table|field". */
 typedef struct mcor_legal
 {
   bool is_word, excludes_low, excludes_high;
@@ -108,7 +109,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
       MCOR_SAY(ISO_OF_FREE_SURFACE), options->iso_values[i]);
   }
-  /* Seeds at pairs of particles may miss cells that a cap needs; pairs may lie outside of a box. */
+  /* Seeds at pairs of particles do not suffice for caps, which may need other cells. They do not
+   * work with a box or several ranks either, because a pair may lie outside of the box. */
   const char* other = options->capping ? "{capping}"
     : mcor_has_box(options)            ? "{box}"
     : options->ranks                   ? "Several processes"
@@ -192,7 +194,7 @@ mcor_status mcor_check_scalar_form(mcor_context* context, const mcor_input* inpu
                                 : MCOR_OK;
 }
 
-/* Checks the arrays of particles that do not depend on the field. */
+/* Checks positions, smoothing lengths, widening factors, and volumes or masses and densities. */
 static mcor_status mcor_check_particles(mcor_context* context, const mcor_input* input)
 {
   const mcor_skip skip = context->run.uses_solids ? MCOR_SKIP_ABSENT : MCOR_SKIP_SOLIDS;

@@ -19,14 +19,15 @@
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 
-/* A particle is kept if its support ends at most this many cubes away from a probe's points. */
+/* A particle is kept if its support ends at most this far from the bounds of a probe's points. The
+ * unit is a cube, enlarged in proportion to the particle's smoothing length. */
 #define MCOR_POINTS_SLACK 0.5
-/* How many cubes of the grid lie around a region. */
+/* How many cubes the lattice extends at most beyond a region, on each side. */
 #define MCOR_REGION_MARGIN 16
 
-/* Indices of the sums that mcor_far_slice finds: particles in use; particles that become absent;
- * fluid particles that stay. It also finds in `first` the first particle that becomes absent, and
- * as the end of range 0 the greatest reach, slack included, of the particles that stay. */
+/* mcor_far_slice counts in these sums: particles in use; particles that become absent; fluid
+ * particles that stay. `first` of its findings is the first particle that becomes absent. The end
+ * of range 0 is the greatest reach, slack included, of the particles in use that stay. */
 enum
 {
   MCOR_USED,
@@ -40,7 +41,8 @@ typedef struct mcor_far_job
   const mcor_input* input;
   mcor_far* far;
   bool open[3]; /* axes without a period */
-  /* Per smoothing length: the support radius; how much farther away a particle is still needed. */
+  /* reach: the support radius. slack: how far beyond its support a particle is still needed. Both
+   * are for a particle whose smoothing length is 1. */
   double reach, slack;
   double margin; /* the margin for mcor_reach_around */
   double radius; /* all particles within this distance of the region stay */

@@ -41,7 +41,7 @@ static mcor_findings mcor_measure_filling(const mcor_input* input)
   return found;
 }
 
-/* mcor_mark_filling marks the cells that the fluid's particles reach by their smoothing length. */
+/* mcor_mark_filling marks the cells that fluid particles reach by their smoothing lengths. */
 typedef struct mcor_filling_job
 {
   const mcor_input* input;

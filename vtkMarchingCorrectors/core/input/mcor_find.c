@@ -28,7 +28,7 @@ void* mcor_find_memory(mcor_finder* f, size_t bytes)
   return mcor_own(f, malloc(bytes ? bytes : 1));
 }
 
-/* Keeps the first message that says what is wrong; frees later ones. Returns -1, no index. */
+/* Keeps the first message that says what is wrong; frees later ones. Returns -1, not an index. */
 static int mcor_refuse(mcor_finder* f, mcor_message message)
 {
   if (mcor_has_error(f))
@@ -102,8 +102,8 @@ static mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named)
     .name = mcor_keep_name(f, named->name) };
 }
 
-/* Returns the view of an array by its index. An array has one view, whatever it serves for:
- * mcor_project compares the data of weights and masses. */
+/* Returns the view of an array by its index. An array that serves for several roles has one view,
+ * because mcor_project compares pointers to data to find whether the weights are the masses. */
 static mcor_array mcor_view_of(mcor_finder* f, int index)
 {
   mcor_array* view = f->views + index;
@@ -226,7 +226,8 @@ static const char* mcor_called(mcor_finder* f, const char* words, const char* na
   return called ? called : words;
 }
 
-/* Returns the index if the array exists and has numbers for all particles; else an error and -1. */
+/* Returns the index if the array exists and has numbers for all particles. Otherwise sets the error
+ * and returns -1. */
 static int mcor_check_named(mcor_finder* f, const char* words, const char* name, int index)
 {
   if (index < 0)
@@ -313,8 +314,9 @@ static mcor_message mcor_no_length(mcor_finder* f)
     usual ? usual : "", mcor_names_of(f));
 }
 
-/* Finds the value or the array that is given for a quantity, else, if request->find is set, an
- * array with a usual name. */
+/* Sets the view of a quantity to the value or the array that the caller gives, else, if
+ * request->find is set, to an array with a usual name. A missing smoothing length is an error,
+ * except in a call that only lists arrays. */
 static void mcor_find_quantity(mcor_finder* f, mcor_role role)
 {
   static const char* const words[MCOR_ROLE_VALUES] = { "smoothing length", "volume", "mass",
@@ -335,7 +337,7 @@ static void mcor_find_quantity(mcor_finder* f, mcor_role role)
   }
 }
 
-/* Quantities that are given, known or used. */
+/* Bits of quantities, which tell what is given, known or used. */
 enum
 {
   MCOR_THE_LENGTH = 1 << MCOR_ROLE_SMOOTHING_LENGTH,
@@ -361,8 +363,8 @@ static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given,
                                                                             : known & MCOR_THE_MASS;
 }
 
-/* Returns a message about what the caller gives in vain. volumes: the name of the array of volumes
- * that is used, or NULL. */
+/* Returns a message about quantities that the caller gives, but that are not used. volumes: the
+ * name of the array of volumes that is used, or NULL. */
 static mcor_message mcor_describe_unused(
   const mcor_request* request, unsigned given, unsigned used, const char* volumes)
 {
@@ -429,7 +431,8 @@ static void mcor_find_sizes(mcor_finder* f)
   }
 }
 
-/* Chooses the array to contour if none is given. All ranks call this function together. */
+/* Returns the index of the array to contour if the caller names none; -1: there is none. All ranks
+ * call this function together. */
 static int mcor_choose_scalar(mcor_finder* f)
 {
   const int active = f->request->active;
@@ -545,8 +548,8 @@ static void mcor_find_column(mcor_finder* f)
   mcor_take_role(f, MCOR_ROLE_WEIGHT, "weight", 1);
 }
 
-/* Finds velocities by their usual names: an array of three components, else vx, vy and vz, else an
- * array of two components. */
+/* Returns the index of the velocities, which are found by their usual names: an array of three
+ * components, else vx, vy and vz, else an array of two components; -1: there are none. */
 static int mcor_find_velocity(mcor_finder* f)
 {
   const int64_t count = f->positions->tuples;
@@ -624,7 +627,8 @@ static void mcor_name_scalar(mcor_finder* f)
 }
 
 /* Returns whether the surface gets an array of the particles. Ghost marks are left out, because
- * they would hide triangles. */
+ * they would hide triangles. Also left out are marks of wall blocks, names that the request has
+ * taken or excluded, and the name of the array of iso values. */
 static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
 {
   return a->name && *a->name && strcmp(a->name, "vtkGhostType") != 0 &&

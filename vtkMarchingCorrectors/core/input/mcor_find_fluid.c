@@ -91,9 +91,9 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
   return count < MCOR_KINDS ? count : 0;
 }
 
-/* Finds which value of an array of particle types marks fluid: 0 or 1 if there are only these two,
- * or 3 in DualSPHysics, where types 0 to 2 are fixed, moving and floating bodies. Returns false if
- * the array's name and values leave doubt. */
+/* Finds which value of an array of particle types marks fluid. If the values are 0 and 1, it is 1
+ * in an array "isfluid", else 0. In an array "type" of DualSPHysics, it is 3, because types 0 to 2
+ * are fixed, moving and floating bodies. Returns false if name and values leave doubt. */
 static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
   const mcor_kind* last = kinds + count - 1;
@@ -108,7 +108,8 @@ static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count
   return is_clear;
 }
 
-/* Returns a message that an array with several values of particle types is not used. */
+/* Returns a message that an array of particle types is not used; no message if the array has fewer
+ * than two values. */
 static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind* kinds, int count)
 {
   if (count < 2)
@@ -295,7 +296,7 @@ int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor
     bool varies = false;
     for (int c = 0; c < components && !varies; ++c)
     {
-      /* The component's least value, and minus its greatest, until they show that it varies. */
+      /* The least value so far, and minus the greatest value so far, until these values differ. */
       double ends[2] = { INFINITY, INFINITY };
       for (int64_t k = 0; k < a->tuples && !(ends[0] < -ends[1]); ++k)
       {

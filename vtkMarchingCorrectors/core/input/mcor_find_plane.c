@@ -49,8 +49,8 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
 }
 
 /* Fails. If all fluid lies in a plane, the message names the plane of the solids or, if the solids
- * do not lie in one plane, the first solid off the fluid's plane. Returns MCOR_OK if a fluid
- * position is not finite. */
+ * do not lie in one plane, the first solid off the fluid's plane. But returns MCOR_OK if a position
+ * of the fluid is not finite. */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {
@@ -94,7 +94,8 @@ static mcor_status mcor_drop_rounded_plane(
 {
   const mcor_array* x = &input->positions;
   const int axes[2] = { mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1) };
-  /* Ranges along both axes. Sums: particles; tested particles; tested particles with a twin. */
+  /* Ranges: the extents along both axes of the plane. Sums: the numbers of particles, of tested
+   * particles, and of tested particles with a twin. */
   mcor_findings found = mcor_no_findings();
   int64_t* counts = found.sums;
   if (plane->at == 0 || (double)(float)plane->at != plane->at)
@@ -142,7 +143,8 @@ static void mcor_set_plane(mcor_context* context, mcor_plane plane)
   context->space = spaces[plane.axis > 0];
 }
 
-/* Takes the plane of the globals, or looks for one; all ranks find the same plane. */
+/* Sets context->plane and `space`: takes the plane of the globals or, without globals, looks for
+ * the plane in which all particles lie. All ranks find the same plane. */
 static mcor_status mcor_look_for_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

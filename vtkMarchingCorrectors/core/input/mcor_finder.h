@@ -9,7 +9,7 @@
 /* An array with more different values than this does not tell types of particles. */
 #define MCOR_PARTICLE_TYPES 8
 
-/* The most names that a quantity has. */
+/* The most usual names that a quantity has. */
 #define MCOR_NAMES 14
 
 /* mcor_name.c. Whether a name is the name `usual`, which consists of small letters and digits. In
@@ -35,12 +35,13 @@ typedef struct mcor_finder
   bool lacks_memory;
 } mcor_finder;
 
-/* Hands memory to the result, which frees it; returns NULL if memory ran out. */
+/* Makes `memory` a part of f->found, which is freed with it. Returns `memory`; if there is no room
+ * for it, frees it and returns NULL. */
 void* mcor_own(mcor_finder* f, void* memory);
 /* Allocates memory that belongs to the result. */
 void* mcor_find_memory(mcor_finder* f, size_t bytes);
 
-/* Copies a name, because the array's owner may change it meanwhile; NULL stays NULL. */
+/* Copies a name into f->found, because the array's owner may change it later; NULL stays NULL. */
 const char* mcor_keep_name(mcor_finder* f, const char* name);
 
 static inline bool mcor_has_error(const mcor_finder* f)
@@ -48,7 +49,7 @@ static inline bool mcor_has_error(const mcor_finder* f)
   return f->found->error.code != MCOR_SAYS_NOTHING;
 }
 
-/* Returns the name that is given by hand for a role; NULL if it is "", or "(automatic)" or
+/* Returns the name that the caller gives for a role; NULL if it is "", or "(automatic)" or
  * "(none)", which panels use. */
 const char* mcor_given_name(const mcor_finder* f, mcor_role role);
 
@@ -59,7 +60,7 @@ int mcor_find_by_name(const mcor_finder* f, const char* name);
  * words: what the array is for. */
 int mcor_find_given(mcor_finder* f, const char* words, const char* name, int components);
 
-/* Lists the arrays: "Point arrays: A, B."; "" if memory runs out. */
+/* Returns a list of the arrays, for messages: "Point arrays: A, B."; "" if memory runs out. */
 const char* mcor_names_of(mcor_finder* f);
 /* Reads any element as a double. */
 double mcor_element_at(const mcor_named* named, int64_t tuple, int component);
@@ -67,7 +68,7 @@ double mcor_element_at(const mcor_named* named, int64_t tuple, int component);
 /* mcor_find_fluid.c. Finds the array and the value that mark fluid, or an array that seems to mark
  * fluid but is not used. All ranks call this function together. */
 void mcor_find_fluid(mcor_finder* f);
-/* Marks solid and absent particles, and counts the fluid. */
+/* Marks solid and absent particles in found->input.solid, and counts the fluid. */
 void mcor_mark_particles(mcor_finder* f);
 
 #endif

@@ -22,8 +22,8 @@ static inline double mcor_array_at(const mcor_array* array, int64_t i, int compo
                                   : (double)((const float*)array->data)[at];
 }
 
-/* Whether a particle is used. Solids are not used if they are ignored, nor for a free surface that
- * does not end at them. */
+/* Whether a particle is used: fluid always is, absent particles never are. Solids are used unless
+ * they are ignored, or the surface is a free surface that does not end at solids. */
 static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||
@@ -78,13 +78,13 @@ static inline double mcor_most(double a, double b)
   return b > a ? b : a;
 }
 
-/* Whether all numbers are in a range. */
+/* Whether all numbers are from `least` to `most`. */
 bool mcor_is_all_within(const double* x, int count, double least, double most);
 
 /* mcor_check.c. Fails and says that two sides of a box are not an interval. */
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to);
 
-/* Kernels count in int, also a little beyond the last particle. */
+/* The most particles. Kernels count in int, also a little beyond the last particle. */
 #define MCOR_PARTICLE_LIMIT 2000000000
 
 static inline const char* mcor_array_name(const mcor_array* array, const char* role)
@@ -135,10 +135,11 @@ void mcor_free_bare_context(mcor_context* context);
 /* Merges ranges and sums of all ranks, but not `first`. */
 mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
 
-/* Widens [*low, *high] to hold x. */
+/* Widens [*low, *high] to hold the `count` numbers x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
-/* Finds the range of one component, as range 0 of the result. skip: which of the particles that
- * `solid` marks are left out. If `solid` is NULL, none is. */
+/* Returns the range of one component, as range 0 of the result. skip: which of the particles that
+ * `solid` marks are left out. With `solid`, values that are not finite are left out, too. If
+ * `solid` is NULL, no value is left out. */
 mcor_findings mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, int component);
 /* Returns the largest absolute value in a range; 0 if the range is empty. */
@@ -163,16 +164,17 @@ struct mcor_far
   double place[3];      /* position of the first absent particle of all ranks; not if is_cut */
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
-/* In a call with globals, marks the particles that the measuring call left out: all particles
- * beyond the measured bounds. */
+/* In a call with globals, marks as absent, in far->solid, the particles that the measuring call
+ * left out: all particles beyond the measured bounds. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
-/* Finds the bounds of a lattice that surrounds only a region, see mcor_far. low, high: the bounds
- * of the positions of all particles in use. */
+/* Copies from run.far to context->measure what statistics tell of absent particles. If far->is_cut,
+ * also narrows the measured bounds, so that the lattice surrounds only the region. low, high: the
+ * bounds of the positions of all particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
 /* Called when capacity does not suffice. If the least or the greatest smoothing length differs much
- * from the median, appends its particle to the error sentence. */
+ * from the median, appends to the error sentence which particle has this length. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* Returns the first particle with a component that is not finite or, if `positive`, not above 0;
@@ -199,8 +201,9 @@ mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, 
 /* The most fluid particles whose neighbours are counted while all particles are measured. */
 #define MCOR_WATCHED 32
 
-/* Hashes a position: particles with the least hashes stand for all. The second function adds a
- * sample to a list if its hash is among the least. */
+/* mcor_hash_position returns the hash of a position. The particles with the least hashes are
+ * samples, which stand for all particles. mcor_add_sample adds a sample to a list if the list is
+ * not full, or if the sample's hash is among the least. */
 uint64_t mcor_hash_position(const double x[3]);
 void mcor_add_sample(mcor_sample_list* found, const mcor_sample* sample);
 

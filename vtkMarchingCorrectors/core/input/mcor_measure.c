@@ -68,8 +68,9 @@ static void mcor_find_normal(mcor_watch* watch)
   }
 }
 
-/* Counts, for each watched particle, the neighbours in a chunk, and updates its distance to the
- * nearest one. low, high: the bounds of the chunk's positions. */
+/* For each watched particle, counts the chunk's particles within its support, and updates the
+ * squared distance to the nearest particle at another place. low, high: the bounds of the chunk's
+ * positions. */
 MCOR_VECTOR_LOOPS static void mcor_watch_positions(
   mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {
@@ -98,7 +99,7 @@ MCOR_VECTOR_LOOPS static void mcor_watch_positions(
   }
 }
 
-/* Joins the slices and ranks, and sets the measure's medians over the watched particles. */
+/* Merges what all slices and ranks have found, and sets the medians in context->measure. */
 static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 {
   mcor_measure* m = &context->measure;
@@ -133,7 +134,7 @@ static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int 
 
 /* ---- All particles ---- */
 
-/* Findings over all particles: the ranges, and the sums. */
+/* Indices of the findings over all particles: first of ranges, then of sums. */
 enum
 {
   MCOR_REACHES = 0, /* positions minus and plus support radii: x, y, z */

@@ -87,8 +87,9 @@ static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
 }
 
 /* Narrows the bins' range to the bin that holds one value, again and again, until this bin has
- * fewer than `many` values. number: the value's index in ascending order. A bin's range ends at its
- * least and its greatest value, so that a huge outlier does not move the median. */
+ * fewer than `many` values, but at most `passes` times. number: the value's index in ascending
+ * order. A bin's range ends at its least and its greatest value, so that a huge outlier does not
+ * move the median. */
 static mcor_status mcor_narrow_bins(
   mcor_context* context, mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {

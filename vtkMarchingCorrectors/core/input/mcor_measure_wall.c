@@ -14,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The whole number that stands for a weight of 1; and the most that one particle adds, so that
- * no sum overflows. */
+/* MCOR_WHOLE_WEIGHT: the whole number that stands for a weight of 1. MCOR_MOST_WEIGHT: the most
+ * that one particle adds to a sum, so that no sum overflows. */
 #define MCOR_WHOLE_WEIGHT 1073741824.0
 #define MCOR_MOST_WEIGHT 4.0
 
@@ -113,8 +113,8 @@ static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Returns the median of the solids' shares, weighted by the fluid at the samples, but at least 0.01
- * and at most 0.99. Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
+/* Returns the median of the solids' shares at the samples, from 0.01 to 0.99. Each sample counts by
+ * the fluid's weight sum. Returns MCOR_FREE_WALL_SHARE if no sample has fluid near. */
 static double mcor_median_share(mcor_wall_measure* wall)
 {
   double sum = 0, median = INFINITY;

@@ -22,9 +22,9 @@
 #define MCOR_LEAF 8 /* particles of a leaf of the tree */
 #define MCOR_LENGTH_STEPS 60
 #define MCOR_LENGTH_ERROR 1e-7 /* relative error of a length; least length / extent */
-/* The curve covers an extent that reaches at most this many widths beyond the middle half of the
- * particles, where a width is the length of this half. Otherwise one particle far away would leave
- * no digits for all others. */
+/* The curve covers the bounds of the particles, but along each axis at most this many widths beyond
+ * the middle half of the particles. A width is the greatest length of the middle half along any
+ * axis. Without this limit, one particle far away would leave no digits for all others. */
 #define MCOR_MOST_WIDTHS 1000.0
 
 typedef struct mcor_neighbour
@@ -103,7 +103,7 @@ static int mcor_compare_neighbours(const void* a, const void* b)
   return order == 0 ? memcmp(p, q, offsetof(mcor_neighbour, place)) : order;
 }
 
-/* Adds a position to the samples unless they have it; ranks have copies of others' particles. */
+/* Adds a position to the samples unless they have it: two ranks may have the same particle. */
 static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
 {
   bool is_new =
@@ -206,7 +206,7 @@ typedef struct mcor_neighbour_list
   bool failed;
 } mcor_neighbour_list;
 
-/* Adds the particles of node n of the tree that are within `radius` of a place. */
+/* Adds to `list` the particles of node n of the tree that are within `radius` of a place. */
 static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const double x[3],
   double radius, mcor_neighbour_list* list)
 {
@@ -241,7 +241,7 @@ static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const dou
   }
 }
 
-/* Lists the particles within the support of h, and their images whole periods away. */
+/* Lists the particles and periodic images of particles within the support of h around x. */
 static void mcor_list_neighbours(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
@@ -287,8 +287,8 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* Smoothing lengths have steps, four in each power of 2. Returns the greatest step that is not
- * above h, or the step that comes `further` steps after it. */
+/* The search for smoothing lengths goes in steps: four from one power of 2 to the next. Returns the
+ * greatest step that is not above h, or the step that comes `further` steps after it. */
 static double mcor_length_step(double h, int further)
 {
   int exponent;
@@ -297,8 +297,9 @@ static double mcor_length_step(double h, int further)
   return ldexp(4 + quarter, (number - quarter) / 4 - 4);
 }
 
-/* Returns the smoothing length of sorted particle i, which lies between two steps. Uses false
- * position with some bisection. Neither the steps nor the result depend on the first guess. */
+/* Returns the smoothing length h of sorted particle i, for which sum_j W h^d is job->eta. First
+ * finds two successive steps with h between them, then uses false position with some bisection.
+ * Neither the steps nor the result depend on the first guess. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
@@ -466,7 +467,8 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   return MCOR_OK;
 }
 
-/* Runs the job in a context without a device, which keeps the error. job.eta is 0 for densities. */
+/* Runs the job in a context without a device, and writes the error to *why. job->eta is 0 to sum
+ * densities, and above 0 to find smoothing lengths. */
 static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, mcor_message* why)
 {
   mcor_context* context = mcor_make_bare_context(job->options);

@@ -38,7 +38,8 @@ double mcor_size_scale(mcor_context* context, const mcor_input* input)
   return 1 / (globals ? globals->mass_max : mcor_largest(context, input, &input->mass, 0));
 }
 
-/* A chunk of particles, in the units of the staging arrays. */
+/* A chunk of particles and their periodic images. x: positions in fixed-point units; h: lengths in
+ * unit L, without h_scale; size: volumes or masses in the device's unit. */
 typedef struct mcor_stage_chunk
 {
   int count;
@@ -84,7 +85,8 @@ MCOR_VECTOR_LOOPS static void mcor_read_stage_places(
   }
 }
 
-/* Lists which of particle i of a chunk and its periodic images are staged. Returns how many are. */
+/* Lists in `images` which periodic images of particle i of a chunk are staged. The particle itself
+ * counts as an image. Returns the number of staged images. */
 static int mcor_images_of(
   const mcor_staging* staging, const mcor_stage_chunk* chunk, int i, mcor_images* images)
 {
@@ -150,7 +152,8 @@ static int mcor_next_chunk(const mcor_staging* staging, int64_t* begin, int64_t 
   return count;
 }
 
-/* Counts the images that a slice stages. Unmarks the particles of which no image is staged. */
+/* Counts the particles and periodic images that a slice stages. Unmarks the particles of which no
+ * image is staged. */
 static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_staging* staging = data;
@@ -269,8 +272,8 @@ static double mcor_weight_limit(const mcor_context* context)
   return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
 }
 
-/* Stages a chunk from element *to on, and advances *to. From the first chunk on with a particle
- * whose weight is too large, or that is beyond the measured bounds, nothing is staged. Particles
+/* Stages a chunk from element *to on, and advances *to. If a weight in the chunk is too large, or a
+ * particle is beyond the measured bounds, stages neither this chunk nor any later chunk. Particles
  * are beyond the bounds, on which all later steps rely, if the caller's arrays have changed. */
 static void mcor_stage_chunk_at(
   const mcor_staging* staging, mcor_stage_slice* slice, mcor_stage_chunk* chunk, int64_t* to)

@@ -21,7 +21,7 @@ typedef struct mcor_suspicion
 } mcor_suspicion;
 
 /* Bounds of the ratio smoothing length / distance of the nearest particle. Free surfaces and walls
- * hardly change the ratio. It is up to 1.7 for most solvers, and up to 2.2 for DualSPHysics.
+ * hardly change the ratio. The ratio is up to 1.7 for most solvers, and up to 2.2 for DualSPHysics.
  * Wendland kernels allow more. */
 #define MCOR_LEAST_RATIO 0.9
 #define MCOR_MOST_RATIO 2.2
@@ -30,12 +30,13 @@ typedef struct mcor_suspicion
 
 /* A nearest particle may be very near by chance. So smoothing lengths are called too long only if
  * there are also many neighbours in all: more than this number times (support / smoothing
- * length)^3. Above MCOR_SHEET_RATIO, the limit is MCOR_SHEET_NEIGHBOURS, because sheets and drops
- * have few neighbours. */
+ * length)^3. If the ratio is above MCOR_SHEET_RATIO, MCOR_SHEET_NEIGHBOURS is this number instead,
+ * because sheets and drops have few neighbours. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
-/* The same limits in two dimensions: neighbours per (support / smoothing length)^2. */
+/* In two dimensions, the numbers MCOR_MANY_NEIGHBOURS and MCOR_SHEET_NEIGHBOURS become these two,
+ * for (support / smoothing length)^2. */
 #define MCOR_MANY_IN_PLANE 5.6
 #define MCOR_ROW_NEIGHBOURS 3.5
 
@@ -112,7 +113,7 @@ static double mcor_single_step(double largest)
 }
 
 /* Whether steps of single precision are too long at the largest coordinate, and all of the fluid's
- * coordinates are numbers of single precision. axis: the largest coordinate's axis. */
+ * coordinates are numbers of single precision. axis, step: the axis and step of this coordinate. */
 static bool mcor_is_coarse(const mcor_suspicion* s, int* axis, double* step)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -151,7 +152,7 @@ static mcor_message mcor_warn_coarse(const mcor_suspicion* s)
     : MCOR_NO_MESSAGE;
 }
 
-/* Particles may lie up to this many smoothing lengths beyond a period. */
+/* Warns if the fluid's extent is longer than a period by more than this many smoothing lengths. */
 #define MCOR_BEYOND_PERIOD 1
 
 static mcor_message mcor_warn_period(const mcor_suspicion* s)

@@ -32,7 +32,7 @@ typedef struct mcor_fill_line
   int32_t* number;         /* [vertex_count + cut_count]: number of the surface's point; -1: none */
 } mcor_fill_line;
 
-/* corner: a node's index; or node_count + a cut's index; or -1 - the index of a surface's point. */
+/* corner: a node's index; or node_count + a cut's index; or -1 - the index of a surface point. */
 typedef struct mcor_fill_triangle
 {
   int32_t corner[3];
@@ -40,8 +40,8 @@ typedef struct mcor_fill_triangle
   uint64_t square;
 } mcor_fill_triangle;
 
-/* A node, or a line's vertex, on the border of a square; and the part of the border from this
- * corner to the next one. */
+/* A corner of a square's border: a node, or a vertex of a line. Also describes the part of the
+ * border from this corner to the next one. */
 typedef struct mcor_fill_corner
 {
   mcor_cap_corner corner; /* must be the first member; vertex: a corner of mcor_fill_triangle */
@@ -176,8 +176,8 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
 }
 
 /* Keeps the vertices of the current lines, and adds 1 to the band of each node that is above the
- * iso value. For nodes that marching has evaluated, marching's result counts, because the lines are
- * made from it. */
+ * iso value. If marching squares has evaluated a node, the result of marching squares counts,
+ * because the lines are made from this result. */
 mcor_status mcor_take_lines(mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;
@@ -295,8 +295,8 @@ static uint64_t mcor_fill_node_key(const cl_int node[3])
 }
 
 /* Finds the point where trimming cuts the side of a polygon between two corners. If the side is a
- * line, trimming has made the point before. If the side is on the border, finds the point of a
- * neighbouring square, or makes the point. */
+ * line, trimming has made the point before. If the side is on the border, the point is made, unless
+ * a neighbouring square has made it before. */
 static mcor_status mcor_cut_fill_side(
   void* data, const mcor_cap_corner* from, const mcor_cap_corner* to, mcor_cap_corner* cut)
 {
@@ -323,7 +323,7 @@ static mcor_status mcor_cut_fill_side(
   return MCOR_OK;
 }
 
-/* Adds the polygon whose first corner is corner i of the border. */
+/* Adds the triangles of the polygon whose first corner is corner i of the border. */
 static mcor_status mcor_add_polygon(mcor_filling* fill, int i)
 {
   const mcor_cap_corner* corners[MCOR_POLYGON_MOST];
@@ -346,8 +346,8 @@ static mcor_status mcor_add_polygon(mcor_filling* fill, int i)
       next->begins_line = true;
       corners[count++] = &next->corner;
       /* Goes to the other end of the line. A line's level has two corners on the border, or four.
-       * With four, the level has two lines. They surround the nodes below the level if `joined`,
-       * else the nodes above. */
+       * With four, the level has two lines. These lines surround the nodes below the level if
+       * `joined`, else the nodes above. */
       const int level = next->level;
       const bool joined = mcor_find_number(&fill->lines[level].joined, (uint64_t)fill->lowest) >= 0;
       const int step = next->falls == joined ? 1 : fill->count - 1;

@@ -114,7 +114,7 @@ mcor_status mcor_flatten(
         context, &input->positions, input->count, false, &flat->input.positions, &flat->positions);
 }
 
-/* Turns three numbers of `width` bytes back, in place. */
+/* Turns three numbers of `width` bytes back to the caller's axes, in place. */
 static void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)
 {
   char from[3 * sizeof(double)], *to = numbers;

@@ -13,7 +13,7 @@
 
 #include "mcor_internal.h"
 
-/* The caller's input and options, turned. */
+/* The caller's input and options, turned into the plane. */
 typedef struct mcor_flat
 {
   mcor_input input;

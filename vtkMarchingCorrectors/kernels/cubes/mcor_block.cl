@@ -1,17 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds the blocks: cubes of 8 x 8 x 8 bricks that may have surface. A few large cubes cover the
- * whole lattice. Active cubes are divided into 8, level by level, down to blocks. A cube is
- * inactive if the cube and all cubes around it are void (no cell is valid there) or certainly on
- * one and the same side of the iso value. Then no crossed edge is in the cube or leads out of it.
- * Empty space costs next to nothing. Space that coarse particles fill with values far from the iso
- * value costs next to nothing, too.
+/* Finds the blocks: cubes of 8 x 8 x 8 bricks that may have surface (a brick has 4 x 4 x 4 nodes).
+ * A few large cubes cover the whole lattice. Active cubes are divided into 8, level by level, down
+ * to blocks. A cube is inactive if the cube and all cubes around it are void (no cell is valid
+ * there) or certainly on one and the same side of the iso value. Then no crossed edge is in the
+ * cube or leads out of it. Empty space costs next to nothing. Space that coarse particles fill with
+ * values far from the iso value costs next to nothing, too.
  *
  * Cubes of one size are sorted by key, like blocks, so mcor_find_block finds them. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one of all cubes of the largest size. Writes the cube's key. */
+/* One work-item = one cube of the largest size, number i of all. Writes the cube's key. */
 __kernel void mcor_block_all(
   const int count, __global const mcor_rung* rungs, const int level, __global ulong* keys)
 {

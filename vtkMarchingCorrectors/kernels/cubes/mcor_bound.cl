@@ -45,7 +45,8 @@ void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Finds the least and greatest w in boxes of half size e around (dx, dy, dz). */
+/* Finds the least and greatest w of a particle in a box of half size e. dx, dy, dz: from the box's
+ * centre to the particle. */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
@@ -59,8 +60,9 @@ void mcor_bound_weights(
   *greatest = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* Returns w at the nearest (side -1) or farthest (side 1) point of a box of half size e around (dx,
- * dy, dz). */
+/* Returns a particle's w at the point of a box that is nearest to the particle (side -1) or
+ * farthest from it (side 1). dx, dy, dz: from the box's centre to the particle; e: the box's half
+ * size. */
 realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side, realv inv_h)
 {
   const realv x = fmax(fabs(dx) + side * e[0], (realv)0);
@@ -70,8 +72,8 @@ realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side
   return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * (inv_h * off));
 }
 
-/* Finds the least w at the farthest point of each box, and the greatest w at the nearest point,
- * because w falls with the distance. */
+/* Finds a particle's least w, at the farthest point of the box, and the greatest w, at the nearest
+ * point: w falls with the distance. */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
@@ -80,7 +82,7 @@ void mcor_bound_weights(
 }
 #endif
 
-/* Sums over the particles that reach a box. */
+/* Sums over the particles that reach a box; the comment on rounding above explains `size`. */
 typedef struct
 {
   int count;
@@ -128,7 +130,8 @@ void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mc
   bound->count += tile->count;
 }
 
-/* Returns the state that the sums prove for the box; MCOR_EXAMINE if they prove none. */
+/* Returns the state that the sums prove for the box: MCOR_VOID, MCOR_ABOVE or MCOR_BELOW. Returns
+ * MCOR_EXAMINE if they prove none of these states. */
 int mcor_bound_state(const mcor_bound* bound, real iso, real node_threshold)
 {
   const real k = (2 * (real)bound->count + MCOR_BOUND_ROUNDINGS) * MCOR_UNIT_ROUNDOFF;

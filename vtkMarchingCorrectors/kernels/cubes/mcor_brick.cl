@@ -61,9 +61,9 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
   need[slot] = known[slot] || idle ? 0 : ~0UL;
 }
 
-/* One work-item = one brick of the old set. If the new set has the brick, copies the brick's data
- * to its slot in the new set. words: how many 4-byte words the values of a brick's nodes take. The
- * values of a brick are either all known or all unknown. */
+/* One work-item = one brick of the old set of bricks with slots. If the new set has this brick,
+ * too, copies the brick's data to its slot in the new set. words: how many 4-byte words the values
+ * of a brick's nodes take. The values of a brick's nodes are either all known or all unknown. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,

@@ -74,7 +74,8 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
-/* Returns how many vertices of a brick lie on edges from nodes before n. e: its edge masks. */
+/* Returns how many vertices of a brick lie on edges from nodes before n. e: the brick's edge
+ * masks. */
 int mcor_edge_rank(__global const ulong* e, int n)
 {
   const ulong below = (1UL << n) - 1;
@@ -131,9 +132,9 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* Returns the index of a cell's row, i.e. the way to triangulate the cell. If ambiguous face k
- * (from 0) of its case joins the nodes above the iso value, 2^k is added to the index of the case's
- * first row. corners: see mcor_cell_corners. */
+/* Returns the index of the row (a way to triangulate) for a cell. The result is the index of the
+ * first row of the cell's case, plus 2^k for each ambiguous face of the case, number k from 0, that
+ * joins the nodes above the iso value. corners: see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -189,8 +190,8 @@ int mcor_cell_emit(__global const mcor_cell_row* row, const int numbers[3][MCOR_
   {
     const int edge = row->edges[i], axis = edge >> 3, x = edge & 1, y = edge >> 1 & 1;
     const int number = numbers[axis][first + x + 5 * y + 25 * (edge >> 2 & 1)];
-    /* A negative number marks an edge with two vertices. A cell that lies below the edge along the
-     * first of the other two axes takes the second vertex. */
+    /* A negative number marks a pinched edge, which has two vertices. The cell at lower coordinates
+     * along the first of the other two axes takes the second vertex. */
     to[i] = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
   }
   return row->triangles;

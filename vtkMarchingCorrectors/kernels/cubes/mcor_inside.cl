@@ -5,7 +5,8 @@
  * nodes are above the iso value of the free surface, so that no other particles are read. */
 
 /* Returns roughly which share of a box the tile's particles fill. The box is the query's box,
- * widened on all sides by the reach of particles of mean size. unit: see mcor_grid. */
+ * widened on all sides by the distance at which a particle of mean size still counts. unit: see
+ * mcor_grid. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 {
   realv volume = 0, inv_h = 0;
@@ -33,8 +34,9 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
 /* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
- * above the iso value. The first point is `at`, the others are `step` apart. The terms are added in
- * another order than at a node; the margin of 1.0001 is larger than the difference. */
+ * above the iso value. `at` is the lowest point, `step` the distance between points along each
+ * axis. The terms are added in another order than where a node is evaluated; the margin of 1.0001
+ * is larger than the difference. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();
@@ -62,11 +64,11 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether the close particles also lift the nodes on the leaf's far sides (its upper faces) above
- * the iso value. Only nodes of the leaf's own level count. Finer nodes on the far sides belong to
- * finer leaves, which have proofs of their own. If the proof fails on the far sides of a leaf
- * beside a larger leaf, the smaller leaf is chosen as one that may have surface. tile: particles
- * close to any of the leaf's nodes. */
+/* Whether particles close to a leaf's nodes lift the nodes on the leaf's far sides (its upper
+ * faces) above the iso value. Only nodes of the leaf's own level are tested. Finer nodes on the far
+ * sides belong to finer leaves, which have proofs of their own. If the test fails, mcor_leaf_choose
+ * chooses the leaf as one that may have surface. query: the box of the leaf's nodes; tile: the
+ * close particles. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {
@@ -108,9 +110,10 @@ bool mcor_sides_are_inside(
  * can only add to the sum: w >= 0, rounding is monotone, and terms keep their order. The margin of
  * 1.0001 allows for a compiler that rounds the same term differently elsewhere.
  *
- * beside: the brick is a leaf beside finer or coarser leaves; if the proof fails on its far sides,
- * the result includes MCOR_OPEN_SIDES. wide: the close particles of the brick's region; used only
- * if complete. */
+ * beside: whether the brick is a leaf beside finer or coarser leaves. If so, the nodes on the
+ * leaf's far sides are tested, too; if this test fails, MCOR_OPEN_SIDES is added to MCOR_ABOVE.
+ * wide: a tile of the particles close to the brick's region. If `wide` is not complete, the brick's
+ * own close particles are gathered instead. */
 int mcor_seed_proof(
   const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide, real iso)
 {

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the cells of leaves, i.e. of bricks that are not split, that touch finer leaves.
- * Such a cell also has nodes in the middle of edges or faces; mcor_adaptive_cell.h makes its
- * triangles. The leaf's nodes have coordinates 0 to 8, in finer cells from its first node. Finer
- * nodes and the edges between them are in slots of the finer level; other edges are in slots of the
- * leaf's level. */
+/* Adaptive cubes: the cells that touch finer leaves. A leaf is a brick that is not split into finer
+ * bricks. A cell that touches a finer leaf also has nodes in the middle of edges or faces;
+ * mcor_adaptive_cell.h makes the cell's triangles. A node's coordinates, from 0 to 8, count cells
+ * of the finer level from the leaf's first node. Finer nodes, and the edges between them, are in
+ * slots of the finer level; other edges are in slots of the leaf's level. */
 
 /* The nodes of a leaf. */
 typedef struct
@@ -221,7 +221,8 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __g
   cells[slot] = some ? ~0UL : 0;
 }
 
-/* Returns the number of the vertex on a cell's edge. axis, lower: as in mcor_leaf_edge_of. */
+/* Returns the number of the vertex on a cell's edge, or on half of a split edge. axis, lower: as in
+ * mcor_leaf_edge_of. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {

@@ -3,25 +3,28 @@
 
 /* Adaptive cubes: finds the leaves that may have surface.
  *
- * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have nodes of this level, 5 along an
- * edge. Where a finer leaf is beside the leaf, its cells also have nodes of the finer level on the
- * common side, 9 along an edge. A leaf itself owns 4 nodes along an edge. The fifth belongs to a
- * leaf up from it, i.e. towards larger x, y or z. If all leaves up from a leaf are of its level,
- * the states (mcor_seed.cl) or node values of all these leaves tell on which sides of the iso value
- * the nodes of its cells lie. If all these nodes are on one side, the leaf has no surface. Beside
- * leaves of other levels, a leaf's state has to cover all points of the leaf, its sides included.
- * All lengths are in cells of the level. */
+ * A leaf is a brick of 4 x 4 x 4 cells of its level. The cells of a leaf A have 5 nodes along each
+ * edge of A. If a finer leaf touches A, the cells of A also have the finer nodes on the common
+ * side, 9 along an edge. A owns only 4 nodes along an edge; the fifth belongs to the next leaf
+ * towards larger x, y or z. If all these next leaves have the level of A, the states (mcor_seed.cl)
+ * or node values of A and of these leaves tell on which sides of the iso value the nodes of A's
+ * cells lie. If all nodes lie on one side, A has no surface.
+ *
+ * A leaf A is beside other levels if a finer leaf touches A, or if one of these next leaves is
+ * larger. Then only A's own state counts: A has no surface if the state is certain and also holds
+ * for the nodes on A's far sides. */
 
-/* Returns the bits of the 8 bricks of a row. Rows are numbered through all blocks. */
+/* Returns the bits of the 8 bricks of a row. Each block has MCOR_BLOCK_ROWS rows. row: counts the
+ * rows of all blocks. */
 #define MCOR_BLOCK_ROWS (MCOR_BLOCK_BRICKS / 8)
 uint mcor_row_of(__global const uint* bits, int row)
 {
   return bits[row >> 2] >> 8 * (row & 3) & 0xff;
 }
 
-/* Returns the bits of bricks x = -1 to 8 as bits 0 to 9: of a row's 8 bricks in a block, and of one
- * brick on either side. blocks: see mcor_seed_blocks; row: the number of the row's first brick in
- * the block. */
+/* Returns the bits of bricks x = -1 to 8 as bits 0 to 9: a row's 8 bricks in a block, and one brick
+ * of the block on either side. blocks: see mcor_seed_blocks; row: the number of the row's first
+ * brick in the block. */
 uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 {
   const int word = row >> 5, at = row & 31;
@@ -42,7 +45,9 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   const uint own = mcor_row_of(leaves, item);
   const int4 brick = mcor_brick_of_number(rungs, block_keys, m);
   const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick);
-  uint finer = 0, all = ~0u; /* bit x: any brick around is split; none up is larger */
+  /* Bit x of `finer`: any brick around brick x is split. Bit x of `all`: each neighbour of brick x
+   * at higher coordinates is a leaf or split. */
+  uint finer = 0, all = ~0u;
   for (int d = 0; d < 9; ++d)
   {
     const int4 other = brick + (int4)(0, d % 3 - 1, d / 3 - 1, 0);
@@ -60,15 +65,17 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   atomic_or(beside + (m >> 5), (own & (finer | ~all)) << (m & 31));
 }
 
-/* The leaves, and what is known of their nodes. */
+/* Parameters: which bricks are leaves, the states of bricks, and for each slot whether the values
+ * of its nodes are known, which nodes are above the iso value, and which are valid. */
 #define MCOR_KNOWN_PARAMS                                                                          \
   MCOR_BRICK_PARAMS, __global const uint *leaves, __global const uchar *states,                    \
     __global const ulong *known, __global const ulong *above, __global const ulong *valid
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
-/* Returns on which sides of the iso value valid nodes of leaf m lie: with d = 0 all its nodes, else
- * the nodes that it shares with the leaf that is d (bits x, y, z) down from it. If the values are
- * not known, returns the leaf's state; if brick m is no leaf, MCOR_EXAMINE. */
+/* Returns on which sides of the iso value valid nodes of leaf m lie. With d = 0, all nodes of the
+ * leaf count. Else only the nodes count that cells of another leaf use, too: the leaf that is d
+ * (bits x, y, z) down from leaf m. If the nodes' values are not known, returns the leaf's state. If
+ * brick m is no leaf, returns MCOR_EXAMINE. */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))
@@ -100,7 +107,8 @@ __kernel void mcor_leaf_choose(
     const int4 brick = first + (int4)(x, 0, 0, 0);
     const int slot = mcor_slot_of_number(brick_bits, brick_base, at);
     const bool evaluated = slot >= 0 && known[slot], is_beside = mcor_has_brick(beside, at);
-    /* open: nothing is known of the nodes that cells of other levels have on the leaf's sides. */
+    /* open: the leaf is beside other levels, and its state does not count, because its nodes are
+     * evaluated, or does not hold for the nodes on its far sides. */
     const bool open =
       evaluated || states[at] == MCOR_EXAMINE ? is_beside : (states[at] & MCOR_OPEN_SIDES) != 0;
     int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);

@@ -7,11 +7,12 @@
 
 #define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
 
-/* Returns the bricks whose nodes a leaf needs. Bit d = 0 to 7 is the brick of its level that is d
- * (bits x, y, z) up from it. Bit 8 + x + 3 y + 9 z (each 0 to 2) is the brick of the finer level
- * that is x, y, z bricks from the finer brick at the leaf's lowest corner. If a leaf beyond a far
- * side is finer, the finer bricks also have the leaf's nodes on that side. In a plane, only bricks
- * of the plane's layer are needed. */
+/* Returns the bricks whose nodes a leaf needs, as bits. Bit d = 0 to 7 is the brick of the leaf's
+ * level that is one brick up along x (if bit 0 of d is set), y (bit 1) and z (bit 2). Bit 8 + x + 3
+ * y + 9 z, with x, y and z from 0 to 2, is a brick of the finer level: the brick that is x, y, z
+ * finer bricks up from the leaf's lowest corner. If a brick beyond a far side of the leaf is split,
+ * its finer bricks own the leaf's nodes on that side. In a plane, only bricks of the plane's layer
+ * are needed. */
 ulong mcor_leaf_wanted(uint finer, int plane)
 {
   ulong wanted = 0;
@@ -101,10 +102,11 @@ bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above
   return crossed != 0;
 }
 
-/* One work-item = one leaf. Writes to `mixed` whether the leaf may have surface: whether it has
- * crossed cells, or, beside finer leaves or in a plane, whether the bricks that it needs have valid
- * nodes on both sides of the iso value. Marks the slots whose values the cells of a mixed leaf
- * need, even slots whose sides are certain. Several leaves may mark one slot. */
+/* One work-item = one leaf. Writes to `mixed` whether the leaf may have surface. In space, a leaf
+ * without finer leaves around it may have surface if it has crossed cells. Any other leaf may have
+ * surface if the bricks that it needs have valid nodes on both sides of the iso value. Marks the
+ * slots whose values the cells of a mixed leaf need, even slots whose sides are certain. Several
+ * leaves may mark one slot. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global ulong* need)

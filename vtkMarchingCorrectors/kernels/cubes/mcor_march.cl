@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by lattice
- * edge.
+/* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells. Vertices are numbered by
+ * lattice edge.
  *
  * A cell is used if it is valid at all nodes and has nodes on both sides of the iso value. A cell
  * is plain if no finer brick touches it, not even at a corner: all its nodes are in bricks of its
@@ -11,9 +11,9 @@
 
 /* One work-item = one leaf. Reads the masks of the leaf's nodes. Treats only cells that are not
  * plain. Removes such a cell from `used` if it is not valid at all nodes, or if all its nodes are
- * on one side of the iso value. Marks the edges of the cells that stay, and writes how many
- * triangles (in a plane, lines) they have to the leaf's slot. Adds to flat_loops the number of
- * owned cells' polygons that lie in a single face of their cell. */
+ * on one side of the iso value. Marks the edges of the cells that stay. Writes to the leaf's slot
+ * how many triangles (in a plane, lines) these cells have. A polygon of the surface may lie in a
+ * single face of its cell; adds the number of such polygons, in owned cells, to flat_loops. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -72,9 +72,10 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   plain_used[slot] = now;
 }
 
-/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the masks of
- * crossed edges whose lower node is in the brick and that have a used cell around them. Counts
- * vertices, triangles or lines, and tunnels. */
+/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the brick's edge
+ * masks (see mcor_cell.cl), for crossed edges that have their lower node in the brick and a used
+ * cell around them. Writes the number of vertices and, if the topology is resolved, of tunnels.
+ * Adds the triangles (in a plane, lines) of plain cells to triangle_count. */
 __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int plane,
   const int leaf_count, __global const uint* quadrants, __global const ulong* plain_used,
   __global const ulong* above, __global ulong* edges, __global int* vertex_count,
@@ -184,8 +185,9 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
 
 /* One work-item = one brick. Reads used cells, node masks, decisions and the numbering of vertices
  * by edge. Writes triangles (in a plane, lines) and, if `follows` is set, the keys of their cells.
- * Keys mark cells outside of the box x0 to z1, which this call does not own, and among them the
- * cells in the box all_x0 to all_z1, which other ranks own. */
+ * The key of a cell outside of the box x0 to z1 has the mark MCOR_RING_CELL: this call does not own
+ * the cell. If this cell is in the box all_x0 to all_z1, another rank owns it, and its key also has
+ * the mark MCOR_OTHERS_CELL. */
 __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   __global const ulong* plain, __global const int* leaf_of, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,
   const int all_x0, const int all_y0, const int all_z0, const int all_x1, const int all_y1,

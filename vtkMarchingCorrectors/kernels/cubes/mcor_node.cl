@@ -1,23 +1,27 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes. mcor_node_lanes.cl has what differs on CPUs. */
+/* Evaluation of the field at nodes. This file has mcor_node_sum for GPUs, mcor_node_lanes.cl has it
+ * for CPUs. */
 
-/* Nodes that one work-item evaluates: one, or with several lanes all 64 nodes of a brick, in groups
- * of MCOR_LANES. MCOR_ITEM_EXTENT: from the first of these nodes to the last, along each axis. */
+/* MCOR_ITEM_NODES: how many nodes one work-item evaluates. With one lane, this is 1. With several
+ * lanes, it is all 64 nodes of a brick, in MCOR_NODE_GROUPS groups of MCOR_LANES nodes.
+ * MCOR_ITEM_EXTENT: how many cubes lie between the first and the last of these nodes along each
+ * axis. */
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 #define MCOR_ITEM_EXTENT (MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1)
 
-/* Sums at a group of nodes: s = sum V (A - A0) W with A0 the shift of the particles' values, w =
- * sum V W, and, with solids, the trimming weight t. */
+/* Sums at a group of nodes, one node in each lane: s = sum V (A - A0) W, w = sum V W, and, with
+ * solids, the trimming weight t. A0 is subtracted from all particles' values, see mcor_grid. */
 typedef struct
 {
   realv s, w, t;
 } mcor_node_sums;
 
-/* Return the group of a work-item's n-th node, and the node's lane in the group. Nodes of a group
- * are close together: 2 x 2 x MCOR_GROUP_Z nodes, with one lane a single node. */
+/* mcor_group_of returns the group of a work-item's n-th node, mcor_lane_of the node's lane in the
+ * group. A group has 2 x 2 x MCOR_GROUP_Z nodes, which are close together. If MCOR_LANES is 1, a
+ * group is a single node. */
 #define MCOR_GROUP_Z (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 int mcor_group_of(int n)
 {
@@ -57,7 +61,7 @@ void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_s
 }
 
 #if MCOR_LANES == 1
-/* Makes the sums at the node of a query, which mcor_node_query made. */
+/* Computes the sums at the only node of a query that mcor_node_query made. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
 {
   const real x = (real)(query->low[0] - query->origin[0]) * grid->unit;
@@ -71,10 +75,10 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
 }
 #endif
 
-/* Returns the query for the box of nodes of a brick from node `first` to node first + extent.
- * share: the share of each particle's support that counts. All bricks of a region count positions
- * from the region's first node, so a node's value is the same with the particles of the brick and
- * with the particles of the whole region. */
+/* Returns the query for the box of nodes of a brick from node `first` to node first + extent. A
+ * particle counts within `share` of its support. All bricks of a region count positions from the
+ * region's first node. So a node's value is the same whether the particles were gathered for the
+ * brick or for the whole region. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
   const mcor_grid* grid, int4 brick, int4 first, int4 extent, float share)
 {

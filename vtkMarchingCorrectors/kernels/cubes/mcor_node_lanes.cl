@@ -3,8 +3,9 @@
 
 /* Sums at the nodes of a brick, in groups of nodes, see mcor_group_of. */
 
-/* The nodes of a group, in cubes from the query's origin. Weights are made in two steps, see
- * mcor_distance. */
+/* mcor_group_place returns the nodes of a group, in cubes from the query's origin. A particle's
+ * weights at the nodes are computed in two steps, mcor_group_distance and mcor_group_weight, as by
+ * mcor_distance and mcor_weight. */
 #if MCOR_TENSOR
 /* The nodes of a group have two different x, two different y and MCOR_GROUP_Z different z. One
  * evaluation gives w for all these coordinates: lanes 0 and 1 hold x, lanes 2 and 3 y, lanes from 4
@@ -67,8 +68,9 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 #define mcor_group_weight mcor_weight
 #endif
 
-/* Adds the tile's particles to the sums of a group. first: the group's first node, in cubes from
- * the query's origin. term: the particles' weights times values. */
+/* Adds the tile's particles to the sums of a group. A particle counts within `share` of its
+ * support. term: each particle's weight times its value. edge: the distance of neighbouring nodes
+ * along each axis, in cubes; first: the group's first node, in cubes from the query's origin. */
 void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], const real first[3],
   real share, mcor_node_sums* sums)
 {
@@ -107,7 +109,7 @@ void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], 
   sums->t = t;
 }
 
-/* Makes the sums at all groups of nodes of a query, which mcor_node_query made. The tile may
+/* Computes the sums at all groups of nodes of a query that mcor_node_query made. The tile may
  * already hold the query's particles. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
 {

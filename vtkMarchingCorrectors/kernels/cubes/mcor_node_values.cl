@@ -25,8 +25,9 @@ __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int coun
   mcor_node_store(sums, node_value + first_node, node_weight + first_node);
 }
 
-/* One work-item = one brick. If its nodes were `evaluated`, reads their values, and marks them
- * known. Writes which nodes are above the iso value, and which are valid. */
+/* One work-item = one brick. Treats only bricks whose nodes were `evaluated`: reads the nodes'
+ * values, marks the nodes as known, and writes which nodes are above the iso value, and which are
+ * valid. */
 __kernel void mcor_node_sides(const int brick_count, __global const ulong* evaluated,
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)

@@ -95,7 +95,8 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
  * rounding does not decide for particles one smoothing length apart on a lattice. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* Returns which of particles i, i + 1, ... of the tile may make a pair with particle j. */
+/* Returns which of the tile's MCOR_LANES particles from i on may be partners of particle j, see
+ * mcor_pair_seed_particle. */
 fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int i, int j, real iso, real h_scale)
 {
@@ -156,7 +157,8 @@ int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mco
   return count;
 }
 
-/* Marks cells for particles [begin, end), to which the query was fitted. */
+/* Marks the cells between particles [begin, end), to which the query was fitted, and their
+ * partners. */
 void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begin, int end,
   real iso, real h_scale, MCOR_MARK_PARAMS)
 {
@@ -188,11 +190,11 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
   }
 }
 
-/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. Most
- * particles are far from the surface, so one test is first made for all groups together: whether
- * values around them are on both sides of the iso value. Reads the particles within the smoothing
- * length of each particle. Marks the cells on the line between the two particles of each pair,
- * whose values have the iso value between them. */
+/* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. Marks the
+ * cells on the lines between these particles and their partners. Most particles are far from the
+ * surface. So one test is first made for all particles up to where x descends, then one for each
+ * group: whether values around the particles are on both sides of the iso value. Only then are the
+ * particles around a group read. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Grows the set of cells between pairs [III-C] from cell to cell through crossed faces. */
+/* Grows the set of cells between pairs of particles [III-C], see mcor_pair.cl, from cell to cell
+ * through crossed faces. */
 
 /* Whether any brick that has nodes of these cells lacks a slot, though its block exists. */
 bool mcor_pair_lacks(
@@ -18,10 +19,10 @@ bool mcor_pair_lacks(
 }
 
 /* One work-item = one brick. If the brick has reached cells that are new since the last round,
- * reads the masks of its nodes. Grows the brick's set of reached cells through crossed faces of
- * used cells: within the brick until nothing changes, and one step into the neighbouring bricks.
- * domain: cells whose nodes all have correct values. Sets flags[0] if a cell of a neighbouring
- * brick is newly reached. */
+ * reads the masks of the brick's nodes. Grows the brick's set of reached cells through crossed
+ * faces of used cells: within the brick until nothing changes, and one step into the neighbouring
+ * bricks. domain: cells whose nodes all have correct values. Sets flags[0] if a cell of a
+ * neighbouring brick is newly reached. */
 __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbours,
   __global const ulong* above, __global const ulong* valid, __global const int4* bricks,
   MCOR_BLOCK_PARAMS, __global const ulong* domain, __global ulong* grown, __global uint* reached,
@@ -60,7 +61,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   mcor_add_cells(reached, own, cells);
   if (!mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
   {
-    grown[own] = cells; /* else the brick is treated again when all its nodes are known */
+    grown[own] = cells; /* else the brick is treated again when the missing slots exist */
   }
   const ulong fresh = cells & ~before & used;
   for (int face = 0; face < 6 && fresh; ++face)

@@ -48,9 +48,10 @@ bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
     node.y <= last_y && node.z + size > first_z && node.z <= last_z;
 }
 
-/* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Both are set if a value
- * is so close that a mean of such values may round to the other side. One flag stands for
- * MCOR_SIDE_PARTICLES successive sorted particles, so most queries need not read particles. */
+/* Flags tell on which sides of the iso value particles' values are: bit 0 above, bit 1 below. Both
+ * bits are set if a value is so close to the iso value that a mean of such values may round to the
+ * other side. One flag stands for MCOR_SIDE_PARTICLES successive sorted particles, so most queries
+ * need not read particles. */
 
 #if MCOR_OF_FIELD
 /* One work-item = one run of MCOR_SIDE_PARTICLES particles. Writes on which sides of the iso value
@@ -72,7 +73,8 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 #endif
 
 /* Returns a state (MCOR_VOID to MCOR_EXAMINE): on which sides of the iso value the particles are
- * that may reach a query's box. A few other particles may count, too. */
+ * that may reach a query's box. A few particles that do not reach the box may count, too, because
+ * one flag stands for several particles. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
@@ -109,8 +111,9 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 #define MCOR_COARSE_PARTICLES 1024
 
 /* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
- * particles, and may be used afterwards. coarse: the result may be a certain side though part of
- * the cube is void, and MCOR_EXAMINE though a bound could decide. */
+ * particles, and may be used afterwards. coarse: saves work, so the result may be MCOR_EXAMINE
+ * though a bound could decide. If the range of the particles' values decides, the result is a
+ * certain side even if the cube, or a part of it, is void. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {
@@ -178,11 +181,11 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 /* One work-item = one of `count` regions from `first` on. Reads the particles that reach the
  * region, and the states of blocks. In a plane (depth 0) or with several levels, first tests
  * whether the range of the particles' values decides. Writes the states of the region's bricks
- * (with several levels, of its leaves), and requests slots for uncertain bricks. Appends the region
- * to the list if it has uncertain bricks. The entries of this call begin at `first`, and are in any
- * order. list_count: how many entries each level has. With several levels, a region includes the
- * nodes on its far sides. Bricks above a plane, and bricks without a node of the box's cells, are
- * void. */
+ * (with several levels, of its leaves), and requests slots for uncertain bricks. If the region has
+ * uncertain bricks, appends it to the list. The list's entries of this call begin at `first`, and
+ * are in any order. list_count: how many entries each level has. With several levels, a region
+ * includes the nodes on its far sides. Bricks above a plane, and bricks without a node of the box's
+ * cells, are void. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, MCOR_BOX_PARAMS,
@@ -250,10 +253,11 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   }
 }
 
-/* Writes the state of a brick in an uncertain region. The state covers the brick's nodes, and for a
- * leaf beside other levels also the nodes on its far sides. wide: the particles of the region; used
- * only if complete. If a work-item evaluates whole bricks, also evaluates the nodes of an uncertain
- * brick, whose particles are already gathered. Returns a mask of the evaluated nodes. */
+/* Writes the state of a brick in an uncertain region. The state holds for the brick's nodes, and
+ * for a leaf beside other levels also for the nodes on its far sides. wide: a tile of the particles
+ * that reach the region; used only if complete. If a work-item evaluates whole bricks, also
+ * evaluates the nodes of an uncertain brick, whose particles are already gathered. Returns a mask
+ * of the evaluated nodes. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
@@ -355,8 +359,9 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
   return sides;
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each uncertain brick,
- * each brick certainly above the iso value beside one certainly below it, and the reverse. */
+/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each uncertain brick.
+ * Where a brick that is certainly above the iso value is beside a brick that is certainly below it,
+ * requests both bricks. */
 __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)
 {
@@ -392,10 +397,10 @@ __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactiv
   }
 }
 
-/* One work-item = one brick; bricks without `fresh` nodes were treated before. Reads its nodes'
- * sides, and the states of bricks around it. Requests each brick that is certainly on one side of
- * the iso value and touches a valid node of this brick on the other side. Sets grown[0] if a
- * requested brick is new. */
+/* One work-item = one brick; bricks without `fresh` nodes were treated before. Reads on which sides
+ * of the iso value the brick's nodes are, and the states of bricks around it. Requests each brick
+ * that is certainly on one side of the iso value and touches a valid node of this brick on the
+ * other side. Sets grown[0] if a requested brick is new. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
   __global const uchar* states, __global uint* brick_bits, __global int* grown)

@@ -22,7 +22,8 @@ bool mcor_sample_is_above(real value)
 
 /* One work-item = one brick. Reads used cells, node masks and, with leaves of several levels, which
  * cells are plain. Writes the ambiguous faces between two plain cells of which at least one is
- * used, and the number of these faces. */
+ * used, and the number of these faces. In a plane, the faces are the plain squares that are
+ * used. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
   const int leaf_count, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
@@ -162,8 +163,9 @@ real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, re
 }
 
 /* Finds the saddles, within the cell, of the trilinear interpolant of corner values f, and returns
- * their number. At a saddle all three derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R =
- * xyz Z + xy this means Q R = -a, P R = -b, P Q = -c. */
+ * their number. x, xy, ..., xyz are the interpolant's coefficients. At a saddle all three
+ * derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy this means Q R = -a, P R =
+ * -b, P Q = -c. */
 int mcor_topology_find_saddles(const real* f, real4 saddle[2])
 {
   const real x = f[1] - f[0], y = f[2] - f[0], z = f[4] - f[0];

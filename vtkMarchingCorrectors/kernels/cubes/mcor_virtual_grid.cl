@@ -13,8 +13,9 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Number of one of 27 bricks: a leaf (x = y = z = 1) and the bricks around it. Or number of one of
- * a leaf's 27 parts: its inside (x = y = z = 1), faces, edges and corners. x, y, z are 0 to 2. */
+/* Returns the number of one of 27 bricks, a leaf (x = y = z = 1) and the bricks around it, or of
+ * one of a leaf's 27 parts: its inside (x = y = z = 1), faces, edges and corners. x, y, z are 0 to
+ * 2. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
 /* Whether a brick's nodes need no values, because its state tells that all are above the iso value,
@@ -52,7 +53,8 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int4 block)
 
 #define MCOR_BLOCK_ARGS block_count, block_shift, rungs, block_keys, block_buckets
 
-/* Return the block of a brick, and the brick's number in the block. */
+/* mcor_block_of_brick returns the block of a brick, mcor_place_in_block the brick's number in the
+ * block. */
 int4 mcor_block_of_brick(int4 brick)
 {
   return (int4)(brick.x >> 3, brick.y >> 3, brick.z >> 3, brick.w);
@@ -145,7 +147,8 @@ bool mcor_request_brick(__global uint* brick_bits, int m)
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
-/* Adds cells to the cells of a brick or leaf, 64 bits in two words. Returns the new cells. */
+/* Adds cells to set number `at` of `cells`, the set of a brick or leaf: 64 bits in two words.
+ * Returns the added cells that the set did not have. */
 ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 {
   const uint low = (uint)added, high = (uint)(added >> 32);

@@ -18,8 +18,8 @@
 #define MCOR_FOR_CPU 0
 #endif
 
-/* Read and write MCOR_LANES elements from p[i] on. Compilers may split vloadn and vstoren into
- * several accesses. */
+/* MCOR_LOAD and MCOR_LOAD_FIX read MCOR_LANES elements from p[i] on, MCOR_STORE writes them. On
+ * CPUs, MCOR_LOAD_FIX does not use vloadn, because compilers may split it into several accesses. */
 #if MCOR_LANES == 1
 #define MCOR_LOAD(i, p) ((p)[i])
 #define MCOR_STORE(v, i, p) ((p)[i] = (v))
@@ -35,8 +35,9 @@ typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
 #endif
 #endif
 
-/* MCOR_MASK makes a mask of the lanes to keep. MCOR_PACK_... write the values of these lanes,
- * packed, to an array with room for MCOR_LANES elements. */
+/* MCOR_MASK makes a mask of the lanes to keep. For these lanes, MCOR_PACK_REAL writes the lanes'
+ * values, and MCOR_PACK_INDEX the numbers first + lane, next to each other, to an array with room
+ * for MCOR_LANES elements. */
 #if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                    \
   __has_builtin(__builtin_ia32_compresssf512_mask) &&                                              \
   __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask)

@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in functions of OpenCL that kernels use, made of Clang's operations for the built-in
- * device. Their results have the same bits as those of OpenCL drivers (test_core_native.c). */
+/* The built-in functions of OpenCL that kernels use, made of Clang's operations, for the built-in
+ * device, which needs no OpenCL driver. Their results have the same bits as the results of OpenCL
+ * drivers (test_core_native.c). */
 
 #define MCOR_DEFINE __attribute__((overloadable, always_inline)) static inline
 

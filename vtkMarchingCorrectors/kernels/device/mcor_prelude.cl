@@ -208,9 +208,10 @@ MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, u
   return low;
 }
 
-/* Returns the cell of x along an axis. The cell is monotone in x, so the cells of two positions
- * enclose the cells of all positions between. All periods are divided into cells alike. Sums follow
- * the order of the cells, so a sum is the same at a place one period away. */
+/* Returns the search cell of position x along an axis; it may lie outside of the level's cells. The
+ * cell is monotone in x, so the cells of two positions enclose the cells of all positions between.
+ * All periods are divided into cells alike. Sums follow the order of the cells, so a sum is the
+ * same at a place one period away. */
 MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
 {
   const fix period = (fix)level->period[axis];

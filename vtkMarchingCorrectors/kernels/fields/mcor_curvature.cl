@@ -64,8 +64,8 @@ void mcor_bent_add(mcor_bent* sum, realv m, const mcor_bent* w)
   }
 }
 
-/* Turns f into the derivatives of the quotient g = f / w, times w: (f / w)'' w = f'' - g w'' - g'
- * w' - w' g'. */
+/* Replaces the derivatives of f by the derivatives of the quotient g = f / w, times w: (f / w)'' w
+ * = f'' - g w'' - g' w' - w' g'. */
 void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
 {
   const realv inv_w = (real)1 / (fabs(w->value) < (real)1e-12f ? (realv)1 : w->value);

@@ -6,9 +6,9 @@
  * Arrays are fixed-point numbers, like positions, so a difference of two values is exact. The
  * gradient of a linear array is then exact up to the rounding of the sums. */
 
-/* One work-item = one of `count` sorted particles from `first` on. Writes its position as node and
- * offset, and whether it is in the box; without a box, every particle counts as inside. Particles
- * outside get node -1. */
+/* One work-item = one of `count` sorted particles from `first` on. Writes the particle's position
+ * as node and offset (in edges), and whether the particle is in the box. Without a box, every
+ * particle counts as inside. Particles outside get node -1. */
 __kernel void mcor_derive_place(const int first, const int count, const real units,
   const real edge_x, const real edge_y, const real edge_z, __global const fix* px,
   __global const fix* py, __global const fix* pz, const int has_box, const int first_x,

@@ -106,9 +106,10 @@ void mcor_cluster_from(
   mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
 }
 
-/* Adds the weights of the listed particles at a group's points, and the first `step` arrays times
- * the weights, to the sums. One loop makes all sums, because each sum alone would wait for its last
- * addition. step: a constant. keep: whether to write the weights to `weight`. */
+/* Adds the weights of the listed particles at a group's points to *weight_sum, and the values of
+ * the first `step` arrays, times the weights, to `sums`. One loop adds to all sums, because the
+ * additions to one sum must wait for each other. Each call passes a constant as `step`. keep:
+ * whether to write the weights to `weight`. */
 __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   const mcor_points* points, const realv at[3], const mcor_cluster_values* values, const int* list,
   int count, const int step, bool keep, realv* weight, realv* weight_sum, realv* sums)

@@ -5,17 +5,20 @@
  * inside the surface. core/fields/mcor_widen.c begins with the rule; this comment gives the reasons
  * for the rule.
  *
- * The taper, a number from 0 to 1, multiplies the growth of the length. It falls to 0 where few
- * neighbours are near, because lone drops and threads would shrink. `least` is the weight sum that
- * a particle needs: the iso value plus a margin. Without the margin, sheets would get holes. At the
- * surface of deep water, there are many neighbours, all on one side. The margin is 0 there, and a
- * particle may even be slightly outside, because each particle that has to be inside would raise a
- * bump. At the rim of a sheet, there are few neighbours, all on one side. The margin is wider
- * there: the neighbours' lengths may be longer, and a thread that hangs from the rim would break. A
- * particle in the corner of a tank has as few neighbours as a particle at a rim, but its neighbours
- * are widened. With its own length the particle would stick out as a knob, so its factor goes most
- * of the way to the mean factor of its neighbours. A particle with more neighbours on one side is
- * at the surface of a drop, and keeps its length. */
+ * The taper, a number from 0 to 1, multiplies the growth of the length. The taper falls to 0 where
+ * few neighbours are near: with longer lengths, lone drops and threads would shrink. `least` is the
+ * weight sum that a particle needs: the iso value plus a margin. Without the margin, sheets would
+ * get holes. At the surface of deep water, there are many neighbours, all on one side. The margin
+ * is 0 there, and a particle may even be slightly outside, because each particle that has to be
+ * inside would raise a bump. At the rim of a sheet, there are few neighbours, all on one side. The
+ * margin is wider there: the neighbours' lengths may be longer, and a thread that hangs from the
+ * rim would break. A particle in the corner of a tank has hardly more neighbours than a particle at
+ * a rim, but these neighbours are widened. With its own length, the particle in the corner would
+ * stick out as a knob, so the particle's factor goes most of the way to the mean factor of the
+ * neighbours. A particle with more neighbours than in a corner, all on one side, is at the surface
+ * of a drop, and keeps its length. */
+
+/* The factors that are tried are this far apart. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
 /* At the surface of deep water, the weight sum may be this far below the iso value. */
@@ -33,7 +36,7 @@
 typedef struct
 {
   fixv x[3];
-  realv inv_h, scale; /* 1 / h_j, in cubes and in the unit of positions */
+  realv inv_h, scale; /* 1 / h_j, with h_j in cubes, and in fixed-point units */
   int count, plane;
 } mcor_widen_at;
 
@@ -78,7 +81,7 @@ int mcor_widen_place(
   return next;
 }
 
-/* Offset of particle k from the particles j along an axis, in the unit of positions. */
+/* Offset of particle k from the particles j along an axis, in fixed-point units. */
 #define MCOR_WIDEN_OFFSET(axis, position) MCOR_CONVERT_REALV(grid->position[k] - at->x[axis])
 
 /* Most factors s for which one walk over the particles makes the sums. */
@@ -208,7 +211,7 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
 
 /* One work-item = MCOR_LANES listed particles. Reads each particle's taper from `factor`, and from
  * `least` the weight sum that the particle needs. Replaces the taper by the particle's factor.
- * outside: whether the sum is below the iso value even with the widest factor. */
+ * Writes to `outside` whether the weight sum is below the iso value even with the widest factor. */
 __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, __global const real* least, __global const real* sizes, const int listed,
   __global const int* list, __global real* factor, __global int* outside)
@@ -272,9 +275,9 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
 }
 
-/* Whether all particles that may reach the query's box have the widest factor. This is so for
- * nearly all groups, which are deep inside the fluid. Their mean factor is then the widest
- * factor. */
+/* Whether all particles that may reach the query's box have the widest factor. Then the mean factor
+ * in the box is the widest factor. Nearly all groups of particles are deep inside the fluid, where
+ * this is so. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {

@@ -82,7 +82,8 @@ int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int
   return count;
 }
 
-/* Appends the particles of a mask to the tile, but not their indices to its list. */
+/* Stores the particles of a mask in the tile from place `count` on. Leaves the tile's `list` and
+ * `count` unchanged. */
 void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_h, realv weight,
   realv value, realv trim_weight, int count, mcor_tile* tile)
 {
@@ -116,7 +117,7 @@ void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
   const real unit = grid->unit;
   const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
   const mcor_span box = query->box;
-  /* own: a particle counts within its own support; else it counts within the query's radius. */
+  /* own: a particle counts within a share of its own support; else within the query's radius. */
   const bool own = query->radius < 0;
   const realv reach = own ? -query->radius : (real)1;
   const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
@@ -216,7 +217,7 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 typedef struct
 {
   mcor_mask mask[MCOR_PARTS][MCOR_TILE_SIZE / MCOR_LANES + 1];
-  int chunks, longest; /* masks of a part; the most particles that reach a part */
+  int chunks, longest; /* number of masks of a part; most particles that reach a part */
 } mcor_reach_masks;
 
 typedef struct
@@ -367,10 +368,10 @@ void mcor_values_load(
 
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
-/* Adds w_i A_i over the particles of a reach to `step` sums. Only the first `count` sums have an
- * attribute A. One loop makes all sums, because each sum alone would wait for its last addition.
- * weight: w_i in each lane; if `make`, computes w_i, and adds it to *weight_sum. `step` and `make`
- * are constants. */
+/* Adds w_i A_i, for the particles i of a reach, to `step` sums, one for each attribute A. Only the
+ * first `count` sums have an attribute. One loop adds to all sums, because the additions to one sum
+ * must wait for each other. weight: w_i in each lane; if `make`, computes w_i, and adds it to
+ * *weight_sum. Each call passes constants as `step` and `make`. */
 #define MCOR_ATTRIBUTE_STEP 4
 __attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,
   const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,

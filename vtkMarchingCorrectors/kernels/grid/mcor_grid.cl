@@ -97,8 +97,9 @@ void mcor_grid_heap_sort(
 #define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
 
 #if MCOR_LANES > 1
-/* Sorts a cell's particles by x. Returns false if two of them have the same x. A particle's place
- * is the number of particles before it, counted for MCOR_LANES particles at once. */
+/* Sorts a cell's particles by x, into `order` and px. Returns false if two particles have the same
+ * x; then the result is not complete. A particle's place is the number of particles before it,
+ * counted for MCOR_LANES particles at once. */
 bool mcor_grid_rank(
   const fix* own, const int* item, int cell, int end, __global int* order, __global fix* px)
 {
@@ -305,8 +306,9 @@ typedef struct
   side[1] = MCOR_FMA(pull, along[1], side[1]);                                                     \
   side[2] = MCOR_FMA(pull, along[2], side[2]);
 
-/* Adds particle k to the sums of the particles j, at x. scale: 1 / h_j, in the unit of positions.
- * inside: the lanes for whose particles the tile was gathered. */
+/* Adds particle k to the sums of the particles j, one in each lane, at positions x. scale: 1 / h_j,
+ * with h_j in fixed-point units. inside: the lanes for whose particles the tile was gathered; other
+ * lanes stay unchanged. */
 void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, const fixv x[3],
   realv scale, realv inv_h, fixv inside, int plane, mcor_density_sums* sums)
 {

@@ -35,7 +35,8 @@ typedef struct
   int4 low, high; /* box of the group's nodes */
 } mcor_grouping;
 
-/* Whether nodes this far apart may be in one group: the group must gather few particles. */
+/* Whether nodes in a box of this extent, in cubes, may be in one group. In a larger box, a group
+ * would gather too many particles. */
 bool mcor_group_fits(int4 extent)
 {
   return extent.x + extent.y + extent.z <= MCOR_GROUP_EDGES &&

@@ -72,7 +72,7 @@ typedef struct
   fix low[3], high[3];
   fix origin[3]; /* positions in a tile count from here */
   mcor_span box; /* the same box */
-  float radius; /* cubes; -s: s times each particle's own support */
+  float radius;  /* in cubes; if below 0, -radius times each particle's own support */
   /* Of the current level, in fixed-point units. cell_size: edges of a cell; first_cell: where cell
    * 0 begins; slack: how far rounding may move a particle across a cell's face; reach2: squared
    * reach; z2: squared distance of rows at z. */
@@ -194,8 +194,8 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Skips empty rows: moves to the row before the level's next row with particles. If this row has
- * another z, moves to the last row before that z. */
+/* Skips empty rows: moves to the row before the level's next row with particles. If that next row
+ * has another z, moves to the last row before this z. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;

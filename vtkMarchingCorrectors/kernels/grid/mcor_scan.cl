@@ -25,8 +25,8 @@ __kernel void mcor_scan_sum(
   sums[segment] = sum;
 }
 
-/* One work-item = one segment. Reads counts, and the prefix sums of the segments' sums. Replaces the
- * counts by their exclusive prefix sums. Writes the total to element `count`. */
+/* One work-item = one segment. Reads counts, and the prefix sums of the segments' sums. Replaces
+ * the counts by their exclusive prefix sums. Writes the total to element `count`. */
 __kernel void mcor_scan_fill(
   __global int* counts, const int count, const int segments, __global const long* sums)
 {
@@ -70,8 +70,9 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
 
 /* One work-item = one segment. Reads keys, values (in the first round the value of key i is i) and
  * the scanned histogram. Writes keys and values in the order of the digit; equal digits keep their
- * order. in_bits, out_bits: bits of values stored below their keys in one number; 0: values are
- * stored separately. */
+ * order. If in_bits is above 0, each number of `keys` has the value in its lowest in_bits bits, and
+ * the key above. If in_bits is 0, values are an array of their own. out_bits: the same for the
+ * sorted numbers. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
   const int count, const int segments, const int shift, const int bits, const int in_bits,
   const int out_bits, __global const int* histogram, __global ulong* sorted_keys,
@@ -98,7 +99,8 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   }
 }
 
-/* One work-item = one sorted key. Writes 1 if the key differs from the key before it. */
+/* One work-item = one sorted key. Writes 1 if the key differs from the key before it, or is the
+ * first; else 0. */
 __kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
 {
   MCOR_ITEM(i, i < count);

@@ -61,7 +61,7 @@ bool mcor_plane_crosses(const mcor_plane_ring* ring, uint above, int i)
   return ((above >> ring->node[i] ^ above >> ring->node[(i + 1) % ring->count]) & 1) != 0;
 }
 
-/* Returns side i as a slot of mcor_adaptive_cell.h. */
+/* Returns side i as an edge's number (slot) of mcor_adaptive_cell.h. */
 int mcor_plane_side(const mcor_plane_ring* ring, int i)
 {
   return mcor_adaptive_slot(ring->node[i], ring->node[(i + 1) % ring->count]);
@@ -85,14 +85,14 @@ int mcor_plane_mark(
     const int side = mcor_plane_side(&ring, s), axis = side >> 5, lower = side & 31;
     const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, nodes.split, axis, lower);
     const int across = axis == 0 ? lower / 3 : lower % 3;
-    /* the quadrants where the square is */
+    /* Mask 5 has the two quadrants at higher coordinates than the side, mask 10 the other two. */
     mcor_leaf_mark_edge(&edge, across > 0 ? 10 : 5, quadrants);
   }
   return lines;
 }
 
-/* Returns the vertex of the edge along an axis from node (x, y) of a brick. If x or y is 4, the
- * node is in the next brick. upper: slots of the brick's upper neighbours. */
+/* Returns the number of the vertex on the edge along an axis from node (x, y) of a brick. If x or y
+ * is 4, the node is in the next brick. upper: slots of the brick's upper neighbours. */
 int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int x, int y, int axis)
 {

@@ -11,10 +11,11 @@ __kernel void mcor_attribute_means(
   mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* Updates each point's nearest fluid particle. If the query's radius is below 0, only particles
- * that reach the point count. Else all particles within the radius count, and maybe a few beyond
- * the radius. A particle that does not reach the point may be so far from the query's origin that
- * its position in a tile is not exact, so differences are taken between fixed-point numbers. */
+/* Updates each point's nearest fluid particle: *index is its place in the sorted arrays, *least its
+ * squared distance. If the query's radius is below 0, only particles that reach the point count.
+ * Else all particles within the radius count, and maybe a few beyond the radius. A particle that
+ * does not reach the point may be so far from the query's origin that its position in a tile is not
+ * exact, so differences are taken between fixed-point numbers. */
 MCOR_ONE_COPY void mcor_attribute_nearer(
   const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {

@@ -61,7 +61,8 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
  * which some devices do not have. */
 #define MCOR_EIGEN_LEAST (MCOR_DOUBLE ? (real)1e-100 : (real)1e-9f)
 
-/* Makes Jacobi's rotation of axes p and q, which turns pq into 0. r is the third axis. */
+/* Makes Jacobi's rotation of axes p and q, which turns element pq into 0. r is the third axis. vp,
+ * vq: the axes p and q themselves, which are rotated, too. */
 void mcor_eigen_rotate(
   realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
 {

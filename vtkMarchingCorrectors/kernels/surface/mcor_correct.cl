@@ -5,8 +5,9 @@
  * at a time. Vertices of a compact contour that are not on an edge move along a line instead. The
  * line is one cube long, in the gradient's direction at the vertex's start. */
 
-/* Returns x / y, or -1 (outside of every bracket) if y is 0. No kernel makes an infinite value or a
- * NaN, because compilers that relax arithmetic may treat them wrongly. */
+/* Returns x / y, or -1 if y is 0. A step of this length leaves every bracket (interval that has the
+ * root). No kernel makes an infinite value or a NaN, because compilers that relax arithmetic may
+ * treat them wrongly. */
 realv mcor_correct_ratio(realv x, realv y)
 {
   return y != 0 ? x / (y != 0 ? y : (realv)1) : (realv)-1;
@@ -36,8 +37,8 @@ realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
 }
 
 /* Returns the root near t of the cubic that has the given values and slopes at t and at t + last,
- * the start of the last step. After a short step, or a step from a void, uses only the value and
- * slope at t. */
+ * the start of the last step. After a short step, or a step from a point where the field has no
+ * value, uses only the value and slope at t. */
 realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
 {
   const fixv two = fabs(last) > (real)1e-3f && fabs(last_v) < (real)1e20f;
@@ -199,8 +200,8 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     last_t = *t;
     last_value = value;
     last_slope = slope;
-    /* Newton's steps may be tiny if the field has a kink or no slope, so from the 6th step on,
-     * every other step halves the bracket. */
+    /* Newton's steps may be tiny if the field has a kink or no slope. So the 7th, 9th, ... step
+     * halves the bracket. */
     const bool newton = i < 5 || (i & 1);
     next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
     active = active && next != *t;
@@ -217,9 +218,11 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
 
 /* One work-item = one group of vertices. Reads edges, and the values at their ends less the iso
  * value. With `lines`, reads the starts of lines from `offset` instead. Writes each vertex's
- * offset, value, gradient, trimming weight, number of evaluations and attributes. Writes to
- * `linear` the linear position along the edge less the final position, as a share of the edge; on a
- * line, minus the final position, or 1 if the surface is not reached. limit 0: no correction. */
+ * offset, value, gradient, trimming weight, number of evaluations and attributes. For a vertex on
+ * an edge, writes to `linear` the linear position less the final position, as shares of the edge.
+ * For a vertex on a line, writes to `linear` minus the final position, in cubes, if the vertex
+ * reaches the surface, else 1. limit: most steps of a vertex; with 0, vertices stay at their linear
+ * positions or starts, and `linear` is 0. */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,

@@ -20,7 +20,7 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
 }
 
 /* One work-item = one batch of triangles. Writes how many triangles remain of the batch, and how
- * many cut edges its triangles have: two for each cut triangle. */
+ * many cut edges the batch's triangles have: two for each cut triangle. */
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {
@@ -49,9 +49,9 @@ ulong mcor_trim_key(int a, int b)
   return (ulong)min(a, b) << 32 | (uint)max(a, b);
 }
 
-/* One work-item = one batch of triangles. Writes the keys of their cut edges. A cut triangle has
- * two cut edges, which begin at the corner that is alone on its side of the threshold: first the
- * edge to the next corner, then the edge to the corner after that. */
+/* One work-item = one batch of triangles. Writes the keys of the triangles' cut edges. A cut
+ * triangle has two cut edges, which begin at the corner that is alone on its side of the threshold:
+ * first the edge to the next corner, then the edge to the corner after that. */
 __kernel void mcor_trim_edges(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global const int* cuts, __global ulong* keys)
 {

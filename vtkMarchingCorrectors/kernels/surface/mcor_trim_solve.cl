@@ -91,7 +91,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
  * cuts of several edges would meet. */
 #define MCOR_TRIM_RETREATS 12
 
-/* Greatest |w - threshold| of a cut vertex. */
+/* Greatest |weight - threshold| of a cut vertex. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
 /* Limits of trimming. threshold: the least weight, or the least boundary eigenvalue. fluid_share:
@@ -117,9 +117,10 @@ void mcor_quantity_choose(fixv lanes, const mcor_quantity* other, mcor_quantity*
   }
 }
 
-/* Finds by how much the points of the last evaluation exceed the limit that they exceed least, and
- * the gradient of this excess. For a weight sum with a fluid_share above 0, the fluid's share is
- * the only limit. */
+/* A point exceeds each limit of trimming by some excess, which may be negative. Finds the least
+ * excess of each point, and the gradient of this excess. at: from the last evaluation, which was
+ * for these points. The fluid's own weight is a limit only in the lanes `lacking`. For a weight sum
+ * with a fluid_share above 0, the fluid's share is the only limit. */
 void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
   mcor_quantity* bound)
@@ -197,7 +198,8 @@ fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
 }
 
 /* Some points have no Shepard mean at their linear cut. Moves these points towards the end of the
- * edge that is inside, until they have a mean. Returns which points were moved. */
+ * edge that is inside, until they have a mean. linear: the points that may move. Returns which
+ * points were moved. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
   fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -283,7 +285,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
     return linear;
   }
   mcor_trim_return(grid, query, limits->iso, start, linear, points, reach, at);
-  if (MCOR_FIELD != MCOR_SHEPARD || limits->steps == 0) /* in a preview */
+  if (MCOR_FIELD != MCOR_SHEPARD || limits->steps == 0) /* 0: in a preview */
   {
     return linear;
   }

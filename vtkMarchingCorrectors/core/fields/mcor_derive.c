@@ -15,7 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Particles treated at a time. */
+/* The most particles that are treated at a time. */
 #define MCOR_DERIVE_BATCH (1 << 20)
 
 /* A matrix M with a worse condition is not inverted. The condition tells how much inversion
@@ -301,7 +301,8 @@ static void mcor_rotate_away(double m[3][3], int p, int q, int r)
 }
 
 /* Returns the middle eigenvalue of a symmetric matrix, by Jacobi's rotations. Roots of the
- * characteristic polynomial would lose half of their digits if two are equal, as for a rotation. */
+ * characteristic polynomial would lose half of their digits if two roots are equal, as in rigid
+ * rotation. */
 static double mcor_middle_eigenvalue(double m[3][3])
 {
   const double trace = m[0][0] + m[1][1] + m[2][2];

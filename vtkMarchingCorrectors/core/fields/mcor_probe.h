@@ -30,8 +30,9 @@ typedef struct mcor_probe_run
 /* If options has a box, the call uses only particles near the box. Returns whether it has one. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
-/* Writes sorted particles [first, first + count) to the batch as points. If the call has a box,
- * with the cells from `cells` to `end`, points.flags tells whether each particle lies in it. */
+/* Writes sorted particles [first, first + count) to the batch as points. points.flags tells whether
+ * each particle is in the box, i.e. in the cells from `cells` to `end`; particles outside of the
+ * box get node -1. Without has_box, all particles count as inside. */
 mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
   int count, bool has_box, const int cells[3], const int end[3]);
 

@@ -34,7 +34,7 @@ typedef struct mcor_column_side
   double weight[4];
 } mcor_column_side;
 
-/* Returns the reach of a kernel of h = 1 along a unit vector. */
+/* Returns how far a kernel of h = 1 reaches along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
 /* Returns the table's cell, and the weights, for a rectangle's side at `at` (in h) along x (axis 0)

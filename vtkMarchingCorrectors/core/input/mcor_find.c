@@ -383,7 +383,7 @@ static mcor_message mcor_describe_unused(
                                    : mcor_say(MCOR_SAY(DENSITY_WITHOUT_MASS), words);
 }
 
-/* A scalar of this name is summed from masses if there is no such array. */
+/* A scalar of this name is summed from masses if no array has this name. */
 #define MCOR_SUMMED "Density"
 
 static bool mcor_is_summed(const mcor_finder* f)
@@ -637,7 +637,7 @@ static bool mcor_is_carried(const mcor_finder* f, const mcor_named* a)
     !(f->request->has_iso_values && strcmp(a->name, f->found->iso_value_name) == 0);
 }
 
-/* Of the arrays that the surface gets, floats and doubles become attributes. The others cannot be
+/* Floats and doubles that the surface gets become attributes. Arrays of other types cannot be
  * interpolated: they are listed in found->nearest, and each point gets the nearest particle's
  * value. */
 static void mcor_find_attributes(mcor_finder* f)

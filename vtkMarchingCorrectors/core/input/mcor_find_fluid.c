@@ -91,9 +91,9 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
   return count < MCOR_KINDS ? count : 0;
 }
 
-/* Finds which value of an array of particle types marks fluid. If the values are 0 and 1, it is 1
- * in an array "isfluid", else 0. In an array "type" of DualSPHysics, it is 3, because types 0 to 2
- * are fixed, moving and floating bodies. Returns false if name and values leave doubt. */
+/* Finds which value of an array of particle types marks fluid. If the values are 0 and 1, fluid is
+ * 1 in an array "isfluid", else 0. In an array "type" of DualSPHysics, fluid is 3, because types 0
+ * to 2 are fixed, moving and floating bodies. Returns false if name and values leave doubt. */
 static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
   const mcor_kind* last = kinds + count - 1;

@@ -153,7 +153,7 @@ double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
 /* mcor_far.c. Serves a call whose lattice is too long: marks far particles as absent, in
- * far->solid, so that a shorter lattice holds the others. Fails if too many would be absent. */
+ * far->solid, so that a shorter lattice holds the rest. Fails if too many would be absent. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {

@@ -45,7 +45,8 @@ double mcor_size_scale(mcor_context* context, const mcor_input* input);
 mcor_status mcor_stage(mcor_staging* staging);
 
 /* Returns how many of the lowest bits are always 0 in the fixed-point positions of particles with
- * this support, see MCOR_POINT_EXTENT. cube: a cube's length, or less; level: of their cubes. */
+ * this support, see MCOR_POINT_EXTENT. cube: the length of the smallest cubes, or less; level: the
+ * level of the cubes around the particles. */
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level);
 
 #endif

@@ -20,8 +20,8 @@ static const struct
 #include "mcor_says.def"
 };
 
-/* The words for each slot of a sentence. label: the words in panels; if it is "", they are made
- * from `property`, the option's name in VTK's filters. */
+/* The words for each slot of a sentence. label: the words in panels. If label is "", the words are
+ * made from `property`, the option's name in VTK's filters: "CubeSize" becomes "Cube Size". */
 static const struct
 {
   const char *slot, *label, *property;

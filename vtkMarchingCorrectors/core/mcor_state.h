@@ -135,13 +135,12 @@ typedef struct mcor_mesh
   mcor_buffer
     cut_edges; /* ulong: the edge that each vertex of the trim boundary is on, see mcor_trim.cl */
   mcor_buffer triangles;
-  mcor_buffer scanned;                           /* numbers of vertices in the output, see
-                                                  * mcor_is_output */
-  int march_count; /* vertices on lattice edges; these are sorted by level, and so are those on the
-                    * trim boundary */
-  int
-    vertex_count; /* first vertices on lattice edges, then vertices on the trim boundary, then, from
-                   * cap_first on, vertices of caps */
+  mcor_buffer scanned; /* int: numbers of vertices in the output, see mcor_is_output */
+  /* march_count: vertices on lattice edges. vertex_count: these, then the vertices on the trim
+   * boundary, then, from cap_first on, the vertices of caps. Vertices on lattice edges are sorted
+   * by level, and so are vertices on the trim boundary. */
+  int march_count;
+  int vertex_count;
   int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
@@ -253,7 +252,7 @@ typedef struct mcor_component
 {
   int attribute, component;
   double shift, scale; /* on the device: (value - shift) * scale */
-  double low, high;    /* range over fluid particles, for a probe, whose means lie within */
+  double low, high;    /* range over fluid particles; a probe's means lie within it */
 } mcor_component;
 
 /* The components of attributes that vary, and which of them the device holds. */
@@ -283,9 +282,9 @@ typedef struct mcor_box
   int ring;               /* width of the ring of cells that are examined around the owned ones */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
   int
-    halves[6]; /* the box of the owned cells, in halves of the smallest cubes: from x, y, z, to x,
-                * y, z */
-  bool of_points;  /* whether this is the box of a probe's points, `points`: x from, to, y ... */
+    halves[6]; /* the box of the owned cells, x0, y0, z0, x1, y1, z1, in halves of the smallest
+                * cubes */
+  bool of_points;  /* whether this is the box of a probe's points, `points`: x0, x1, y0, ... */
   bool has_points; /* whether `points` is known */
   double points[6];
   int whole_first[3], whole_last[3], whole_halves[6]; /* the cells that any rank owns */
@@ -298,7 +297,7 @@ typedef struct mcor_box
 typedef struct mcor_iso
 {
   int number; /* index in options.iso_values; iso_count while filling adds points */
-  double value, relative; /* the iso value of the caller; the same minus A0, as the device has it */
+  double value, relative; /* the iso value; the iso value minus value_shift, for the device */
 } mcor_iso;
 
 /* The call under way; options are NULL between calls. */

@@ -6,9 +6,9 @@
  *
  * Lattice, ranges, shifts and levels are global: they are measured over all particles. The device
  * has only the particles that reach a place where the field is evaluated. A ring of cells around
- * the owned cells is examined, too, because pinched edges, the border that the node threshold
- * leaves, and normals from triangles depend on it. The ring's triangles are removed from the
- * surface at the very end, see mcor_triangle_cell.c.
+ * the owned cells is examined, too, because the owned cells' pinched edges (edges with two
+ * vertices), the border that the node threshold leaves, and normals from triangles depend on the
+ * ring. Its triangles are removed from the surface at the very end, see mcor_triangle_cell.c.
  *
  * Beyond the ring's nodes, sums lack particles and mean nothing. The bounds found for cubes that
  * extend beyond the ring are too low there, but hold at the ring's nodes. Cubes and bricks
@@ -172,8 +172,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   }
 }
 
-/* Writes to `clipped` the cells that are in the box or in the ring, `ring` cells wide, around it.
- * With adaptive cubes, the ring is mcor_level_ring(ring) cells of each level wide. */
+/* Writes to `clipped` those of the cells that are in the box or in the ring around the box. The
+ * ring is `ring` cells wide; with adaptive cubes, mcor_level_ring(ring) cells of each level. */
 static mcor_status mcor_clip(
   mcor_context* context, int ring, const mcor_buffer* cells, mcor_buffer* clipped)
 {
@@ -275,9 +275,9 @@ double mcor_reach_around(
 {
   /* A volume depends on all particles within the particle's own, unscaled support. */
   const double volumes = computes_volumes ? reach * (1 + 1 / options->h_scale) + margin : 0;
-  /* The particle nearest to a vertex may not reach the box, but it is nearer than the particles
-   * that do. The other particle of a pair may not reach the box either, but it is within a
-   * smoothing length. */
+  /* The particle nearest to a vertex may not reach the box, but it is nearer to the vertex than the
+   * particles that reach the box. One particle of a pair may not reach the box either, but it is
+   * within a smoothing length of the particle that reaches it. */
   const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
   const double nearest = others ? reach + margin : 0;
   /* A widening factor depends on sums with widened supports, at the particle and at the particles
@@ -294,8 +294,9 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
   return period > 0 ? rounded - floor((rounded - first) / period) * period : fixed;
 }
 
-/* Finds the box in which the field is evaluated, in cubes from the lattice's origin; without a box,
- * from -1e30 to 1e30, which single precision can hold. */
+/* Finds the box in which the field is evaluated, in cubes from the lattice's origin. If the call
+ * owns all cells, and there is no period, the box is from -1e30 to 1e30, which single precision can
+ * hold. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
   const mcor_box* box = &context->box;

@@ -55,8 +55,8 @@ static int64_t mcor_count_cubes(
   return 0;
 }
 
-/* Finds edges that divide the periods and are at most a cube long. If possible, all edges are
- * equal. */
+/* Finds edges that divide the periods and are at most `cube` long. If possible, all edges are
+ * equal. axis: the first axis with a period. May lower *top, the highest level. */
 static mcor_status mcor_fit_edges(
   mcor_context* context, const double length[3], int axis, double cube, double edge[3], int* top)
 {
@@ -115,7 +115,8 @@ static mcor_status mcor_check_digits(mcor_context* context, double low, double h
   return MCOR_OK;
 }
 
-/* Finds the edges and the periods in cells. May lower *top, the highest level. */
+/* Finds the cubes' edges, and the lengths of the periods in cells. May lower *top, the highest
+ * level. */
 static mcor_status mcor_fit_period(
   mcor_context* context, const mcor_options* options, double cube, int* top)
 {

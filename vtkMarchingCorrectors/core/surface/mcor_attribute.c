@@ -32,8 +32,9 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Lists components of the attributes that are finite everywhere. of_surface: only components that
- * vary; else, for samples, all. not_finite: [attribute_count], as in mcor_surface. */
+/* Lists components of those attributes that are finite everywhere. of_surface: lists only
+ * components that vary; else, for samples, lists all. not_finite: [attribute_count]; writes what
+ * mcor_surface.attribute_not_finite tells. */
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {
@@ -98,7 +99,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* The means at the vertices that go to the output. */
+/* The arguments of mcor_store_means, which copies the means at output vertices to the surface. */
 typedef struct mcor_means
 {
   const mcor_context* context;

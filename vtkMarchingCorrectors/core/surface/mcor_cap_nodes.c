@@ -271,9 +271,10 @@ static void mcor_take_cap_node(
 }
 
 /* Goes brick by brick, so that successive points are near each other. On the side, asks for nodes
- * above the iso value, whose margins are needed, and for nodes of bricks that marching has not
- * evaluated. One node further in, asks for such unknown nodes beside valid nodes above the iso
- * value: a square without vertices is capped only if these unknown nodes are valid. */
+ * above the iso value, whose margins are needed, and for all nodes of bricks that marching has not
+ * evaluated. One node further in, asks for nodes of bricks that marching has not evaluated, if the
+ * node beside them on the side is valid and above the iso value. A square without vertices is
+ * capped only if these inner nodes are valid. */
 mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner)
 {
   mcor_cap_points points = { .take = mcor_take_cap_node, .data = nodes };

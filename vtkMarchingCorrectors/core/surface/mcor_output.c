@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Statistics of some vertices. */
+/* Statistics of a slice of the vertices. */
 typedef struct mcor_tally
 {
   int64_t trim_vertices, linear, above_tolerance, normals_lacking;
@@ -33,7 +33,7 @@ typedef struct mcor_download
   void *eigenvalue, *nearest, *curvature, *cuts; /* if the caller wants them */
   void *triangles, *cells;                       /* cells: if mcor_follows_cells */
   uint8_t* owned;                                /* see mcor_find_counted */
-  mcor_mapping views[12]; /* the views above, but for triangles and cells; the first is `scanned` */
+  mcor_mapping views[12]; /* the views above without triangles and cells; `scanned` is first */
   int view_count;
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
@@ -76,7 +76,7 @@ static int mcor_flag_of(const mcor_download* d, int64_t v)
                                           : ((const uint8_t*)d->flag)[v];
 }
 
-/* Returns a length in cells of vertex v's level, from the same length in the smallest cells:
+/* Scales a length of the smallest cells, such as their edge, to the cells of vertex v's level:
  * multiplies it by 2^level, see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
@@ -84,7 +84,7 @@ static double mcor_length_of(const mcor_download* d, int64_t v, double length)
   return level > 0 ? ldexp(length, level) : length;
 }
 
-/* Returns how far the correction moved vertex v, unit L. */
+/* Returns how far the correction moved vertex v, unit L; 0 if v is not on a lattice edge. */
 static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
   const mcor_lattice* lattice = &d->context->lattice;
@@ -94,8 +94,8 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
     : 0;
 }
 
-/* Estimates what the device's rounding of sums may add to a residual: two units of rounding of the
- * greatest term. In a Shepard mean, terms are relative to the iso value. For a plain sum, whose
+/* Estimates what the device's rounding of sums may add to a residual: twice the rounding of the
+ * greatest term. In a Shepard mean, terms are relative to the iso value. For MCOR_SUM, whose
  * weights may have any size, weights count as 1, as inside the fluid. */
 static double mcor_sum_rounding(const mcor_context* context)
 {
@@ -168,8 +168,8 @@ static void mcor_store_normal(
   }
 }
 
-/* Returns a vertex's key, ordered by node, then axis. The two vertices of a pinched edge have
- * successive keys. */
+/* Returns the key of a vertex on a lattice edge. Keys are in the order of nodes, then axes. The two
+ * vertices of a pinched edge have successive keys. */
 static uint64_t mcor_march_key(const mcor_download* d, int64_t v)
 {
   const cl_int* node = mcor_node_of(d, v);

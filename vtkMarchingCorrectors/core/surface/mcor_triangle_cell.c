@@ -38,13 +38,13 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
   return mcor_unmap(context, buffer, &view);
 }
 
-/* A vertex on a seam between boxes belongs to several ranks. One of them counts the vertex: the
- * rank that owns the first triangle that uses it. The triangles of a box and its ring have the same
- * order on all ranks. No rank owns cells in the ring beyond all ranks' boxes, where the whole
- * surface ends. Another rank owns each cap's square in the ring, so MCOR_CAP_SQUARE is the same bit
- * as MCOR_OTHERS_CELL. *owners must be NULL before. It becomes an array [vertex_count], MCOR_OWN
- * for vertices that this call counts, or stays NULL if the call owns the whole lattice. The caller
- * frees *owners, also after a failure. */
+/* Finds which vertices this call counts. A vertex on a seam between boxes belongs to several ranks:
+ * the rank that owns the vertex's first triangle counts it. The triangles of a box and its ring
+ * have the same order on all ranks. Triangles in the ring beyond all ranks' boxes, where the whole
+ * surface ends, have no owner, and are skipped. Another rank owns each cap's square in the ring, so
+ * MCOR_CAP_SQUARE is the same bit as MCOR_OTHERS_CELL. *owners must be NULL before the call. It
+ * becomes an array [vertex_count], MCOR_OWN for vertices that this call counts, or stays NULL if
+ * box.is_part is false. The caller frees *owners, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
 {
   const mcor_mesh* mesh = &context->mesh;

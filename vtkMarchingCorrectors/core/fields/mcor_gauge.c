@@ -232,9 +232,9 @@ static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts*
   return MCOR_OK;
 }
 
-/* Returns whether the weight sum may cross the level twice near sample i. This can only be if
- * sample i is nearer to the level than its neighbours, and all of them are on one side of the
- * level. */
+/* Returns whether the weight sum may cross the level twice near sample i. For this, sample i must
+ * be nearer to the level than its neighbours, and on the same side of the level as its
+ * neighbours. */
 static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
@@ -256,8 +256,8 @@ static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
   return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
 }
 
-/* Appends to job->changed the parts of a row in which the line crosses the level. If suspects is
- * not NULL, appends to it the parts with an extremum that may be beyond the level. */
+/* Appends to job->changed the parts of a row in which the line crosses the level. If `suspects` is
+ * not NULL, appends to `suspects` the parts with an extremum that may be beyond the level. */
 static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects)
 {

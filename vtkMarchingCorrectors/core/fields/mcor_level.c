@@ -49,8 +49,8 @@ bool mcor_owns_point(const mcor_level_job* job, const double point[3])
 
 /* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
  * fluid's own sum F is below share times T. The lowered sum is the lesser of T and level + (F -
- * share T) / (1 - share). The second number equals the level where F is exactly share T. The
- * lowered sum is F without change where F is 0, or equals T, as far from solids. */
+ * share T) / (1 - share). The second number equals the level where F is exactly share T. Where F is
+ * 0, or equals T, as far from solids, the lowered sum is F. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;

@@ -74,8 +74,8 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Finds ranges over the particles in the image. 0, 1: what they reach along the image's axes; 2:
- * their positions along the line of sight; 3 to 5: what they reach along x, y, z; 6: their h times
+/* Finds seven ranges over the particles in the image. 0, 1: what they reach along the image's axes;
+ * 2: their positions along the line of sight; 3 to 5: what they reach along x, y, z; 6: h times
  * h_scale. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {

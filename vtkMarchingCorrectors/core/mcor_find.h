@@ -78,7 +78,7 @@ extern "C"
     MCOR_WANT_FLOW = 16,      /* velocity and, where it is known, density as attributes */
     MCOR_WANT_COLUMN = 32, /* for mcor_project: the scalar, if there is one, and mass or density */
     MCOR_WANT_LIST = 64,   /* a list of what is found: a missing smoothing length is no error */
-    MCOR_WANT_FLUID = 128  /* if no fluid is given, a look at arrays that may tell it */
+    MCOR_WANT_FLUID = 128  /* if no fluid is given: an array that tells it, see find_fluid */
   } mcor_want;
 
   /* A range in which the values of an array must be. */

@@ -2,9 +2,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The nodes where caps may be: of one side of a period or box, or of a plane that is filled. They
- * are kept in bricks that particles reach; elsewhere, there is nothing to close. Memory and time
- * therefore depend on the particles at the side, not on the side's area. If marching has evaluated
- * a brick, the brick's nodes are taken from marching, so that the cap fits the surface. */
+ * are kept in the bricks that particles reach; elsewhere, there is nothing to close. Memory and
+ * time therefore depend on the particles at the side, not on the side's area. If empty space is
+ * above the iso value, as with a sum and an iso value of 0, all bricks of the side are kept. If
+ * marching has evaluated a brick, the brick's nodes are taken from marching, so that the cap fits
+ * the surface. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -39,8 +41,8 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
 
 /* ---- Bricks ---- */
 
-/* Fails if particles reach too many clusters (4^3 bricks) at a side. A cluster has 16^2 nodes on
- * the side, so the limit is 4 to 64 million nodes. If few particles reach more nodes, a smoothing
+/* Fails if there are too many clusters (4^3 bricks) at a side. A cluster has 16^2 nodes on the
+ * side, so the limit is 4 to 64 million nodes. If few particles reach more nodes, a smoothing
  * length or the cube size is wrong. */
 static mcor_status mcor_limit_side(
   mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)

@@ -106,7 +106,7 @@ typedef struct mcor_bricks
   mcor_buffer block_keys, block_buckets;                                /* by level, z, y, x */
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
-  mcor_buffer bits, base;             /* [block_count][16]: bricks with slots; slots before a word */
+  mcor_buffer bits, base;             /* [block_count][16]: bricks with slots; slots before them */
   mcor_buffer leaves, split, beside;  /* uint [block_count][16]; only with several levels, see
                                        * mcor_leaf_compare */
   mcor_buffer seed_bits, seeds;       /* seed bricks, as in `bits`; ulong, seed cells by slot */

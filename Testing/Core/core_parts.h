@@ -42,7 +42,7 @@ void core_set_box(mcor_options* options, const core_cut* cut, const int at[3]);
 void core_check_cuts(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options);
 
-/* Like core_check_cuts, with other cuts. */
+/* Does what core_check_cuts does, with the caller's cuts in place of core_cuts. */
 void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
   const mcor_options* options, const core_cut* cuts, int count);
 

@@ -161,8 +161,9 @@ typedef struct lattice_links
   int64_t edge[48], next[48];
 } lattice_links;
 
-/* Links the crossings around a square. A segment leads from where the walk around it enters a run of nodes above iso to
- * where it leaves this run. If the nodes above are joined, segments cut off each of the two nodes below. */
+/* Links the crossings around a square, whose nodes are visited in order. A segment leads from the crossing before a run
+ * of nodes above iso to the crossing behind this run. If the two nodes above iso are joined, each segment cuts off one
+ * of the two nodes below instead. */
 static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring,
   int count, int joined, lattice_links* links)
 {

@@ -570,9 +570,10 @@ extern "C"
     float* correction_length;   /* [point_count], unit L */
     float* residual;            /* [point_count], f - iso, scalar unit */
     /* [point_count]; 0: inside; 1: on the trim boundary: there the weight (or eigenvalue) equals
-     * the vertex threshold, or the solids' share of the weight equals the wall share; 2: as 1, but
-     * left at the linear cut; 4: on a lattice edge next to a cell that the node threshold
-     * discarded; 8: belongs to a cap alone, see capping, or is a node inside the filled region. */
+     * the vertex threshold, or the solids' share of the weight equals the wall share; 2: on the
+     * trim boundary by linear interpolation only, because the exact place was not found; 4: on a
+     * lattice edge next to a cell that the node threshold discarded; 8: belongs to a cap alone, see
+     * capping, or is a node inside the filled region. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */

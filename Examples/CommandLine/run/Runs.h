@@ -66,8 +66,8 @@ struct Run
 };
 
 /// Extracts the surface of the particles once. If the table `pieces` is wanted: gives the surface the
-/// array ComponentId, drops the pieces that are to be left out, and adds a row for each piece that stays
-/// to the table. Throws as Update() does.
+/// array ComponentId, drops the pieces that are to be left out, and adds to the table a row for each
+/// remaining piece. Throws as Update() does.
 Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time = 0.0,
   const std::string& progress = "");
 

@@ -420,8 +420,9 @@ static void mcor_find_sizes(mcor_finder* f)
     used == 0 && !r->compute_volumes ? r->particle_volume : input->volume.constant;
   const bool is_density =
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
-  /* Flow, and the column density (a column without a given array), use masses and densities besides
-   * volumes. The scalar MCOR_SUMMED uses masses. */
+  /* No array is reported as unused if it is used. A flux uses masses and densities besides volumes.
+   * So does a projection without a scalar array, because it integrates the density. The scalar
+   * MCOR_SUMMED uses masses. */
   const bool uses_all = (r->wants & MCOR_WANT_FLOW) != 0 || is_density;
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
   if (!(r->wants & MCOR_WANT_LIST))

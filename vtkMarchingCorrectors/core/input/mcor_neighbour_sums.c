@@ -84,10 +84,10 @@ static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
   return most == 0 ? 0 : p[axis] < q[axis] ? -1 : 1;
 }
 
-/* Compares particles along the curve. Particles at one place of the curve, such as all beyond a
- * corner of the extent, are compared along the curve of their coordinates' bits, which grow as the
- * numbers do. Particles with the same coordinates are compared by the bytes of their masses, so
- * that the input's order does not matter. */
+/* Compares particles along the Morton curve. Different particles may have the same place on the
+ * curve, such as all particles beyond a corner of the extent. These are compared along a finer
+ * Morton curve, of all 64 bits of the coordinates. Particles with the same coordinates are compared
+ * by the bytes of their masses, so that the input's order does not matter. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;

@@ -132,9 +132,9 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* Returns the index of the row (a way to triangulate) for a cell. The result is the index of the
- * first row of the cell's case, plus 2^k for each ambiguous face of the case, number k from 0, that
- * joins the nodes above the iso value. corners: see mcor_cell_corners. */
+/* Returns the index of the row (a way to triangulate) for a cell. The ambiguous faces of the cell's
+ * case have the numbers k = 0, 1, ... The result is the index of the case's first row, plus 2^k for
+ * each face k that joins its nodes above the iso value. corners: see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {

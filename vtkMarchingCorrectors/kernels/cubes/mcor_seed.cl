@@ -72,9 +72,9 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 }
 #endif
 
-/* Returns a state (MCOR_VOID to MCOR_EXAMINE): on which sides of the iso value the particles are
- * that may reach a query's box. A few particles that do not reach the box may count, too, because
- * one flag stands for several particles. */
+/* Returns a state (MCOR_VOID to MCOR_EXAMINE): whether particles that may reach a query's box have
+ * values above the iso value, below it, or both. A few particles that do not reach the box may
+ * count, too, because one flag stands for several particles. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {

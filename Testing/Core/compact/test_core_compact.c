@@ -317,4 +317,29 @@ static void boxes_in_period(void** state)
   core_check_these_cuts(*state, "levels, period", &input, &options, core_cuts, 2);
 }
 
-CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps)
+/* Checks a surface that is large enough for all loops to have several slices. */
+static void many_slices(void** state)
+{
+  compact_case large = cases[0];
+  large.cube = 0.08;
+  large.share = 0.85;
+  CORE_SET set = large.make();
+  const mcor_array attribute = core_array(set.position, 3);
+  const mcor_input input = input_of(&large, &set, &attribute);
+  mcor_options options = options_of(&large);
+  CORE_SURFACE without = core_extract(*state, &input, &options);
+  options.compact = 1;
+  CORE_SURFACE with = core_extract(*state, &input, &options);
+  CORE_CHECK(without.triangle_count > 2 * MCOR_LIGHT_GRAIN, without.triangle_count);
+  check_triangles(&large, &without, &with);
+  setenv("MCOR_THREADS", "1", 1);
+  CORE_CONTEXT context = NULL;
+  const mcor_status created = mcor_create_context(NULL, &context);
+  unsetenv("MCOR_THREADS");
+  CORE_OK(context, created);
+  CORE_SURFACE one = core_extract(context, &input, &options);
+  assert_true(core_hash(&one) == core_hash(&with));
+}
+
+CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps,
+  many_slices)

@@ -128,6 +128,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
     status, mcor_append_bytes(context, &mesh->offset, width * o, bunches->offset, width * n));
   free(bunches->node);
   free(bunches->offset);
+  bunches->node = bunches->offset = NULL; /* as they must be before mcor_map_all */
   MCOR_TRY(status);
   mesh->march_count = first;
   mesh->vertex_count = first + count;

@@ -247,8 +247,8 @@ static bool mcor_integrate_piece(const mcor_flux_job* job, const double* weight,
   return false;
 }
 
-/* Adds a piece to its section, or halves the piece if halving may change its integrals. first: the
- * number of the piece's first sample. */
+/* Adds a piece's integrals to its section, or halves the piece if halving may change the integrals.
+ * first: the number of the piece's first sample. */
 static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece, int first)
 {
   mcor_flux_section* found = &job->found[piece->section];
@@ -340,8 +340,8 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
 
 /* ---- the call ---- */
 
-/* Reads the ranges of velocity and density. Sets the lowest speed and density that the accuracy of a
- * piece is relative to, and the unit of which each sum is a whole number. */
+/* Reads the ranges of velocity and density. Sets the lowest speed and density that the accuracy of
+ * a piece is relative to, and the unit of each sum. Sums are whole numbers of their units. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
   mcor_context* context = job->base.context;

@@ -9,7 +9,7 @@
 
 #include "mcor_level.h"
 
-/* Integrals of a section: of 1, v . n and rho v . n. */
+/* A section has three integrals: of 1, of v . n, and of rho v . n. */
 #define MCOR_FLUX_SUMS 3
 
 typedef struct mcor_flux_piece
@@ -67,7 +67,7 @@ typedef struct mcor_flux_job
   double *weight, *velocity, *density; /* samples of the pieces in `batch` */
 } mcor_flux_job;
 
-/* mcor_flux_section.c. Checks a section and appends its pieces. */
+/* mcor_flux_section.c. Checks a section, and appends its pieces to job->pieces. */
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
 mcor_label mcor_label_section(const mcor_flux_job* job, int64_t number);
 

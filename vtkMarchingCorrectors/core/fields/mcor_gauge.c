@@ -233,8 +233,7 @@ static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts*
 }
 
 /* Returns whether the weight sum may cross the level twice near sample i. For this, sample i must
- * be nearer to the level than its neighbours, and on the same side of the level as its
- * neighbours. */
+ * be on the same side of the level as its neighbours, and at most as far from the level. */
 static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
@@ -317,8 +316,8 @@ static mcor_status mcor_look_closer(
   return MCOR_OK;
 }
 
-/* Evaluates rows [first, last) of job->samples. Appends to job->records the crossings, which lines
- * particles reach, and which lines end in fluid. */
+/* Evaluates rows [first, last) of job->samples. Appends three kinds of records to job->records:
+ * places where lines cross the level, lines that particles reach, and lines that end in fluid. */
 static mcor_status mcor_find_crossings(mcor_gauge_job* job, int64_t first, int64_t last)
 {
   job->changed.count = job->suspects.count = job->inner.count = 0;

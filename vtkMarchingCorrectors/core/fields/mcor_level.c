@@ -87,7 +87,7 @@ mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
     context->box.points[2 * a + 1] = has_box ? job->box[2 * a + 1] + margin : job->around.most[a];
   }
   context->box.has_points = true;
-  /* The search grid is cut to these points, unless other calls may reuse the grid. */
+  /* Only particles near these points are used, unless later calls may reuse the search grid. */
   context->box.of_points = has_box || input->particles_version == 0 || context->run.far;
   MCOR_TRY(mcor_prepare(context, input, options));
   if (context->grid.count == 0)

@@ -39,8 +39,9 @@ mcor_status mcor_call_level(mcor_level_job* job, const mcor_input* input,
  * ranges `around`. */
 mcor_status mcor_run_level(mcor_level_job* job, const mcor_input* input,
   const mcor_options* options, double margin, mcor_status (*work)(mcor_level_job*));
-/* Evaluates the run's first `count` points. weight: gets the weight sums of the fluid, lowered near
- * solids, so that they are below the level where the fluid ends at the solids. */
+/* Evaluates the run's first `count` points, and writes the fluid's weight sums to `weight`. Near
+ * solids the sums are lowered: where the solids' share of the weight is so large that there is no
+ * fluid, the lowered sum is below job->level. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count);
 /* Whether a point is in a cell that this call owns. Without a box, the call owns all points. */
 bool mcor_owns_point(const mcor_level_job* job, const double point[3]);

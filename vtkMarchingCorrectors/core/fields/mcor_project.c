@@ -74,9 +74,9 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Finds seven ranges over the particles in the image. 0, 1: what they reach along the image's axes;
- * 2: their positions along the line of sight; 3 to 5: what they reach along x, y, z; 6: h times
- * h_scale. */
+/* Finds seven ranges over the particles that count for the image. 0, 1: what they reach along the
+ * image's axes; 2: their positions along the line of sight; 3 to 5: what they reach along x, y, z;
+ * 6: lengths of their kernels, i.e. h times widening factor times h_scale. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;

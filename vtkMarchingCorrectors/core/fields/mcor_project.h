@@ -91,7 +91,7 @@ static inline bool mcor_projects_density(const mcor_input* input)
   return !input->scalar.data;
 }
 
-/* Whether a particle adds to the image. */
+/* Whether a particle counts for the image: it is fluid, and view->counted, if given, marks it. */
 static inline bool mcor_is_projected(const mcor_project_job* job, int64_t i)
 {
   return !(job->input->solid && job->input->solid[i]) &&

@@ -12,8 +12,9 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* TOGETHER: particles between two reports of progress. GRAIN: the least number of particles that a
- * thread takes. ROWS: rows of pixels that a lock protects. */
+/* MCOR_SPREAD_TOGETHER: how many particles are spread between two reports of progress.
+ * MCOR_SPREAD_GRAIN: the least number of particles that a thread takes. MCOR_BAND_ROWS: how many
+ * rows of pixels a lock protects. */
 #define MCOR_SPREAD_TOGETHER (1 << 18)
 #define MCOR_SPREAD_GRAIN 2048
 #define MCOR_BAND_ROWS 8
@@ -174,7 +175,7 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
 /* ---- the passes ---- */
 
 /* Spreads particles, with their periodic images, over the pixels. In the first pass, without locks,
- * only counts the images of particles, and finds the most that one of them adds to a pixel. */
+ * only counts particles and images that reach the image, and bounds what one adds to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -237,7 +238,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Returns 3/2 of a power of 2 that is at least four times the number. */
+/* Returns an mcor_project_job.unit: 3/2 of a power of 2 that is at least four times `number`. */
 static double mcor_rounding_unit(double number)
 {
   int exponent;

@@ -144,7 +144,8 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Copies the factors, if they are wanted, and the volumes from the device to run->out. */
+/* Copies from the device to run->out the factors and the volumes, each if it is wanted. Also counts
+ * the particles outside of the surface. */
 static mcor_status mcor_deliver_factors(
   mcor_context* context, const mcor_input* input, mcor_widen_run* run)
 {
@@ -198,9 +199,9 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-/* Finds the factors of all particles. Without globals, the box does not limit this call: the box
- * only tells which particles are too far away to matter, see mcor_leave_out_far. Without particles,
- * no kernels are chosen, so there are no statistics. */
+/* Finds the widening factors of all particles. The box limits the call only if options->globals is
+ * given; else it only tells mcor_leave_out_far which particles are too far away to matter. Without
+ * particles, nothing is measured, so the statistics are not filled in. */
 static mcor_status mcor_run_widen(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {

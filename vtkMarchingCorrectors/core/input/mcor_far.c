@@ -20,14 +20,14 @@
 #define MCOR_FAR_FEW 8
 
 /* A particle is kept if its support ends at most this far from the bounds of a probe's points. The
- * unit is a cube, enlarged in proportion to the particle's smoothing length. */
+ * unit is the length of a cube, enlarged in proportion to the particle's smoothing length. */
 #define MCOR_POINTS_SLACK 0.5
 /* How many cubes the lattice extends at most beyond a region, on each side. */
 #define MCOR_REGION_MARGIN 16
 
 /* mcor_far_slice counts in these sums: particles in use; particles that become absent; fluid
- * particles that stay. `first` of its findings is the first particle that becomes absent. The end
- * of range 0 is the greatest reach, slack included, of the particles in use that stay. */
+ * particles that stay. Its findings also have, as `first`, the first particle that becomes absent
+ * and, as most[0], the greatest reach, slack included, of the particles in use that stay. */
 enum
 {
   MCOR_USED,
@@ -95,8 +95,9 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_findings(context, &job->all);
 }
 
-/* Marks as absent all particles that do not reach the box or the points, except particles near
- * enough to be needed for volumes, pairs and nearest particles. */
+/* Marks as absent all particles that do not reach the box or the points. Particles near enough to
+ * be needed for volumes, pairs, nearest particles or widening factors stay. If no fluid reaches the
+ * box or the points, the fluid at the place of the first sample stays. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
   const mcor_options* options = context->run.options;

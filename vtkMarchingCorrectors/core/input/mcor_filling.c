@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds whether the free surface is what users want to see first. */
+/* Finds whether the fluid has a free surface. A gas that fills its bounds has none. */
 
 #include "mcor_input.h"
 #include "mcor_parts.h"

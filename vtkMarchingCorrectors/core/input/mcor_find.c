@@ -348,10 +348,10 @@ enum
 };
 
 /* Returns from which quantities (bits MCOR_THE_VOLUME and others) volumes come: from volumes, from
- * mass and density, or from masses alone, with computed densities. 0: from none of them; then
- * volumes are request->particle_volume, or computed. given: what the caller names or sets; known:
- * what is given or found. Volumes that are found stay in use, unless the caller gives both mass and
- * density, or wants computed volumes. */
+ * mass and density, or from masses alone, with computed densities. Returns 0 if volumes are
+ * request->particle_volume or, without masses, computed. given: what the caller names or sets;
+ * known: what is given or found. Volumes that are found stay in use, unless the caller gives both
+ * mass and density, or wants computed volumes. */
 static unsigned mcor_choose_volumes(const mcor_request* request, unsigned given, unsigned known)
 {
   const bool has_both = (known & MCOR_MASS_AND_DENSITY) == MCOR_MASS_AND_DENSITY,
@@ -455,7 +455,8 @@ static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
   found->attributes[at] = index;
 }
 
-/* Sets the scalar, and the second vector of a dot product. */
+/* Sets the scalar, its component and, if is_dot, the second vector of a dot product. Sets the error
+ * if the component does not exist, or if the vectors have different numbers of components. */
 static void mcor_keep_scalar(mcor_finder* f, mcor_array view, bool is_column, bool is_dot)
 {
   mcor_found* found = f->found;

@@ -285,7 +285,7 @@ void mcor_mark_particles(mcor_finder* f)
   }
 }
 
-/* Ranks find together which arrays vary. */
+/* The values of all ranks decide whether an array varies, so all ranks choose the same array. */
 int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks)
 {
   int best = -1, best_rank = -1;

@@ -75,7 +75,7 @@ static mcor_status mcor_measure_all(
   return MCOR_OK;
 }
 
-/* Measures the globals: for a surface if `surface` is set, else for calls that contour nothing. */
+/* Fills *globals: for a surface if `surface` is set, else for calls that contour nothing. */
 static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool surface, mcor_globals* globals)
 {

@@ -155,9 +155,10 @@ enum
 /* The most that one particle's widening factor adds to the sum of factors. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Adds to `r` the ranges of a chunk's fluid or solids. low, high: the bounds of the chunk's
- * positions. If all kernels are equally long, these bounds give the exact reach, because rounding
- * keeps the order of numbers. */
+/* Adds to `r` the ranges of a chunk's fluid or, if `solids`, of its solids. reach: the support
+ * radius of a kernel of length 1. low, high: the bounds of the chunk's positions. If all kernels
+ * are equally long, the ranges MCOR_REACHES follow from these bounds, because rounding keeps the
+ * order of numbers. */
 static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double reach,
   const double low[3], const double high[3], mcor_findings* r)
 {

@@ -218,8 +218,8 @@ double mcor_cube_root(double value)
 
 /* *estimate becomes 1.3 times the median of the samples' spacings. A sample's spacing is the cube
  * root of V / 33: the ball around the sample up to its 32nd neighbour has the volume V, and holds
- * 33 particles. In two dimensions, it is the square root, and V the area of a disc. If there are
- * only n particles, and n is below 33, then n takes the place of 33. */
+ * 33 particles. In two dimensions, the spacing is the square root of A / 33, and A is the area of a
+ * disc. If there are only n < 33 particles, n takes the place of 33. */
 static mcor_status mcor_find_spacing(mcor_context* context, mcor_spacing* job, double* estimate)
 {
   double spacing[MCOR_SAMPLES], largest = 0;

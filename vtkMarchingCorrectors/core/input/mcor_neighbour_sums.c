@@ -22,9 +22,9 @@
 #define MCOR_LEAF 8 /* particles of a leaf of the tree */
 #define MCOR_LENGTH_STEPS 60
 #define MCOR_LENGTH_ERROR 1e-7 /* relative error of a length; least length / extent */
-/* The curve covers the bounds of the particles, but along each axis at most this many widths beyond
- * the middle half of the particles. A width is the greatest length of the middle half along any
- * axis. Without this limit, one particle far away would leave no digits for all others. */
+/* The curve covers the bounds of the particles, but ends along each axis at most this many widths
+ * beyond the middle half of the particles. A width is the length of the middle half along the axis
+ * where it is longest. Without this limit, one far particle would leave the others no digits. */
 #define MCOR_MOST_WIDTHS 1000.0
 
 typedef struct mcor_neighbour
@@ -67,7 +67,7 @@ double mcor_w_of(mcor_sph_kernel kernel, double q)
 
 /* ---- The tree ---- */
 
-/* Compares along the curve: by the axis with the highest bit in which places differ. */
+/* Compares places along the Morton curve: by the axis with the highest bit that differs. */
 static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
 {
   uint64_t most = 0;
@@ -85,9 +85,9 @@ static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
 }
 
 /* Compares particles along the Morton curve. Different particles may have the same place on the
- * curve, such as all particles beyond a corner of the extent. These are compared along a finer
- * Morton curve, of all 64 bits of the coordinates. Particles with the same coordinates are compared
- * by the bytes of their masses, so that the input's order does not matter. */
+ * curve, such as all particles beyond a corner of the extent. Such particles are compared along a
+ * finer Morton curve, of all 64 bits of the coordinates. Particles with the same coordinates are
+ * compared by the bytes of their masses, so that the input's order does not matter. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -304,8 +304,8 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
 {
   const double* x = job->sorted[i].x;
   const double least = MCOR_LENGTH_ERROR * job->extent;
-  /* The first guess is the distance of a near particle: the nearer one of two, four places before
-   * and four places behind this one along the curve, because the curve may jump. */
+  /* The first guess is the distance to the nearer one of two particles. They are four places before
+   * and four places behind this particle along the curve, which may jump. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {

@@ -362,7 +362,8 @@ static void mcor_stage_images(const mcor_staging* staging, mcor_stage_slice* sli
   }
 }
 
-/* Whether sizes are areas; areas times smoothing lengths are volumes, see mcor_size_scale. */
+/* Whether sizes are areas: in two dimensions, volumes are areas unless they are computed. An area
+ * times the smoothing length becomes a volume, see mcor_size_scale. */
 static bool mcor_are_areas(const mcor_staging* staging)
 {
   return staging->context->space.flat && !mcor_needs_density(staging->input);

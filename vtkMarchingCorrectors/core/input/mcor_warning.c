@@ -85,8 +85,8 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
                        : "Perhaps the array holds the support radius (then use "
                          "{smoothing_length_is_support_radius}), or is not in the unit of the "
                          "positions.";
-  /* The kernel for which this ratio of smoothing length to spacing would be usual: the quintic
-   * spline, which reaches farther, for few neighbours; a Wendland kernel for many. */
+  /* The kernel for which this ratio of smoothing length to spacing would be usual. With few
+   * neighbours, this is the quintic spline, which reaches farther; with many, a Wendland kernel. */
   const char* likely = spacing == 0 ? ""
     : few && kernel != MCOR_QUINTIC_SPLINE && near >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
     : !few && !wendland && near <= MCOR_MOST_RATIO_WENDLAND                    ? "wendland"
@@ -103,7 +103,7 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
     why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
-/* Warns where fewer steps of single precision than this lie between nearest particles. */
+/* A warning comes if nearest particles are fewer than this many steps of single precision apart. */
 #define MCOR_COARSE_STEPS 8
 
 /* Returns the step between neighbouring numbers of single precision at `largest`. */

@@ -192,8 +192,8 @@ static bool mcor_is_line(const int32_t* t)
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Reads the lines from triangles; trimming may leave two triangles of one line, see mcor_trim_cut.
- * The caller frees the ends, [point_count], even after a failure. */
+/* Writes to *ends, [point_count], the ends of lines at each point. If trimming left two triangles
+ * of one line (see mcor_trim_cut), skips one. The caller frees *ends, even after a failure. */
 static mcor_status mcor_read_lines(
   mcor_context* context, const mcor_surface* surface, mcor_line_ends** ends)
 {
@@ -253,9 +253,9 @@ static double mcor_area_of(const double* a, const double* b, const double* c)
   return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
 }
 
-/* Measures the length, and the area: the area of the filled region or, if all lines are closed, the
- * area that they enclose. Each line adds the signed area of the triangle that it forms with the
- * surface's first point. */
+/* Measures the length and the area. The area is that of the filled region; without filling, the
+ * area that the lines enclose, or 0 if a line is open. Each line adds the signed area of the
+ * triangle that it forms with the surface's first point. */
 static void mcor_measure_lines(mcor_surface* surface)
 {
   mcor_statistics* s = &surface->statistics;

@@ -51,7 +51,8 @@ __kernel void mcor_brick_neighbours(
 
 /* One work-item = one brick. Writes which of the brick's nodes are to be evaluated: all nodes if
  * their values are not known yet, else none. With several levels, a void brick is never evaluated,
- * and a brick certainly above or below the iso value only if mcor_leaf_need marked its slot. */
+ * and a brick certainly above or below the iso value is evaluated only if mcor_leaf_need marked its
+ * slot. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {

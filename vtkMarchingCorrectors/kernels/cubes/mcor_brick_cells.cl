@@ -22,8 +22,8 @@ ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
   return cells;
 }
 
-/* Gathers the masks of a brick and of its 7 upper (first = 0) or lower (first = 7) neighbours. A
- * neighbour without a slot gets the mask 0. */
+/* Writes a brick's mask to out[0], and the masks of its 7 upper (first = 0) or lower (first = 7)
+ * neighbours to out[1] to out[7]. A neighbour without a slot gets the mask 0. */
 MCOR_ONE_COPY void mcor_brick_masks(
   __global const ulong* masks, __global const int* neighbours, int slot, int first, ulong* out)
 {

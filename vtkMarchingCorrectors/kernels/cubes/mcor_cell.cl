@@ -18,8 +18,8 @@ MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
   }
 }
 
-/* Returns the cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on
- * both sides of the iso value. */
+/* Returns the cells whose lower (side 0) or upper (side 1) face across an axis is crossed, i.e. has
+ * nodes on both sides of the iso value. */
 ulong mcor_cell_faces(const ulong* corners, int axis, int side)
 {
   ulong some = 0, all = ~0UL;

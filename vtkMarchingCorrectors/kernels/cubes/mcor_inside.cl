@@ -22,10 +22,11 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
   return mcor_lane_sum(volume) / (MCOR_NORM * box);
 }
 
-/* A brick whose surroundings are filled less than this counts as near the surface. */
+/* If particles fill less than this share of the space around a brick, the brick counts as near the
+ * surface. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
-/* The proof reads a particle only within this share of the particle's support. */
+/* The proof reads a particle only at nodes within this share of the particle's support. */
 #define MCOR_INSIDE_SHARE 0.5f
 
 /* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries the
@@ -36,7 +37,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
  * above the iso value. `at` is the lowest point, `step` the distance between points along each
  * axis. The terms are added in another order than where a node is evaluated; the margin of 1.0001
- * is larger than the difference. */
+ * is larger than the difference of the sums. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();

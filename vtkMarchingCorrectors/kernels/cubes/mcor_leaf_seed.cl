@@ -107,8 +107,8 @@ __kernel void mcor_leaf_choose(
     const int4 brick = first + (int4)(x, 0, 0, 0);
     const int slot = mcor_slot_of_number(brick_bits, brick_base, at);
     const bool evaluated = slot >= 0 && known[slot], is_beside = mcor_has_brick(beside, at);
-    /* open: the leaf is beside other levels, and its state does not count, because its nodes are
-     * evaluated, or does not hold for the nodes on its far sides. */
+    /* open: the leaf is beside other levels and may have surface, because its nodes are evaluated,
+     * its state is uncertain, or its state does not hold for the nodes on its far sides. */
     const bool open =
       evaluated || states[at] == MCOR_EXAMINE ? is_beside : (states[at] & MCOR_OPEN_SIDES) != 0;
     int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);

@@ -76,9 +76,9 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
 #endif
 
 /* Returns the query for the box of nodes of a brick from node `first` to node first + extent. A
- * particle counts within `share` of its support. All bricks of a region count positions from the
- * region's first node. So a node's value is the same whether the particles were gathered for the
- * brick or for the whole region. */
+ * particle counts within `share` of its support. All bricks of a region (2 x 2 x 2 bricks) count
+ * positions from the region's first node. So a node's value is the same whether the particles were
+ * gathered for the brick or for the whole region. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
   const mcor_grid* grid, int4 brick, int4 first, int4 extent, float share)
 {

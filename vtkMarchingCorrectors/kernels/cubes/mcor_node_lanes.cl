@@ -7,9 +7,9 @@
  * weights at the nodes are computed in two steps, mcor_group_distance and mcor_group_weight, as by
  * mcor_distance and mcor_weight. */
 #if MCOR_TENSOR
-/* The nodes of a group have two different x, two different y and MCOR_GROUP_Z different z. One
- * evaluation gives w for all these coordinates: lanes 0 and 1 hold x, lanes 2 and 3 y, lanes from 4
- * on z. */
+/* A tensor kernel is a product of three factors w, one for each axis. The nodes of a group have two
+ * different x, two different y and MCOR_GROUP_Z different z. One evaluation gives w for all these
+ * coordinates: lanes 0 and 1 hold x, lanes 2 and 3 hold y, the lanes from 4 on hold z. */
 typedef struct
 {
   realv at;

@@ -104,8 +104,8 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
   const real y = (real)(grid->py[j] - query->origin[1]) * grid->unit;
   const real z = (real)(grid->pz[j] - query->origin[2]) * grid->unit;
   const real scale = h_scale / MCOR_PAIR_REACH, inv_h = grid->inv_h[j] * scale;
-  /* Positions count from the query's origin. slack: the greatest rounding error of a squared
-   * distance up to the smoothing length 1 / inv_h. */
+  /* Positions count from the query's origin. slack: the greatest rounding error of r2 for distances
+   * up to the smoothing length 1 / inv_h. */
   const real* e = query->box.half_size;
   const real extent = 2 * fmax(e[0], fmax(e[1], e[2])) + query->radius;
   const real off = 16 * MCOR_UNIT_ROUNDOFF * extent, slack = off * (2 / inv_h + 3 * off);
@@ -147,8 +147,8 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
 }
 
 /* Fits the query to the particles from `begin` on, until `end` or until x descends, see
- * mcor_query_particles. The query's radius is the greatest distance of a pair. Returns the number
- * of these particles. */
+ * mcor_query_particles. The query's radius is the greatest distance at which any of these particles
+ * may have a partner. Returns the number of these particles. */
 int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
   real coarsest;
@@ -192,9 +192,9 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
 
 /* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. Marks the
  * cells on the lines between these particles and their partners. Most particles are far from the
- * surface. So one test is first made for all particles up to where x descends, then one for each
- * group: whether values around the particles are on both sides of the iso value. Only then are the
- * particles around a group read. */
+ * surface. So the kernel first tests whether values on both sides of the iso value occur around the
+ * particles: once for all particles up to where x descends, then for each group. Only if both tests
+ * succeed are the particles around a group read. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

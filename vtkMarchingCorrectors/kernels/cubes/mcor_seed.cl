@@ -8,9 +8,9 @@
  * a node below it. If both nodes are left out, their bricks are neighbours, one certainly above and
  * one certainly below: mcor_seed_request has both evaluated after all. If one node is left out, a
  * brick that is certainly on one side touches a valid node on the other side: mcor_seed_grow has
- * this brick evaluated, too. All bricks of uncertain regions have slots while the bricks are
- * tested: mcor_seed_bricks gathers particles to bound the field, and computes the nodes' values
- * from the same particles. */
+ * this brick evaluated, too. Bricks of uncertain regions have slots (places for node values) while
+ * the bricks are tested, because mcor_seed_bricks may compute the nodes' values, from the same
+ * particles that it gathers to bound the field. */
 
 #if !MCOR_OF_LATTICE
 /* Whether the range of the particles' values can decide on which side of the iso value nodes are: a

@@ -147,16 +147,17 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   counts[slot] = 2 * (int)popcount(cells);
 }
 
-/* Returns the root t of xyz t + q = p, or -1 if t is not between -1 and 1. If p - q would cancel,
- * computes t from the other root of (xyz t + q)^2 = p^2: the product of both roots is n / (a
- * xyz). */
+/* Returns the root t of xyz * t + q = p, or -1 if t is not between -1 and 1. If p - q would cancel,
+ * computes t from the other root of (xyz * t + q)^2 = p^2, and from the product n / (a * xyz) of
+ * both roots. */
 real mcor_topology_root(real p, real q, real xyz, real n, real a)
 {
   const real above = p * q > 0 ? n : p - q, below = p * q > 0 ? -a * (p + q) : xyz;
   return fabs(above) < fabs(below) ? above / below : (real)-1;
 }
 
-/* Returns n of mcor_topology_root: the product of both roots, times a xyz. */
+/* Returns the parameter n of mcor_topology_root: (product of both roots) * a * xyz, with a and xyz
+ * as in mcor_topology_root. */
 real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, real xyz)
 {
   return yz * (x * yz - y * xz - z * xy) + y * z * xyz;
@@ -214,8 +215,8 @@ real4 mcor_topology_middle(const real* f)
 }
 
 /* One work-item = one brick. Reads the cells that may have a tunnel, and node values. Writes two
- * samples for each cell: its two saddles; its only saddle twice; or, without a saddle, twice the
- * point of mcor_topology_middle. */
+ * samples for each cell: its two saddles, or its only saddle twice. For a cell without a saddle,
+ * writes the point of mcor_topology_middle twice. */
 __kernel void mcor_topology_middles(const int brick_count, __global const int4* bricks,
   __global const int* neighbours, __global const ulong* decisions, __global const real* node_value,
   __global const int* base, const real iso, __global int4* sample_node,

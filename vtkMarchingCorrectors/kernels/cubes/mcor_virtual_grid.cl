@@ -64,8 +64,8 @@ int mcor_place_in_block(int4 brick)
   return (brick.z & 7) * 64 + (brick.y & 7) * 8 + (brick.x & 7);
 }
 
-/* Returns the number of a brick, or -1 if its block does not exist. Numbers count through all
- * blocks, MCOR_BLOCK_BRICKS each. */
+/* Returns the number of a brick, or -1 if its block does not exist. The bricks of block i have the
+ * numbers from i * MCOR_BLOCK_BRICKS on. */
 int mcor_brick_number(MCOR_BLOCK_PARAMS, int4 brick)
 {
   const int block = mcor_find_block(MCOR_BLOCK_ARGS, mcor_block_of_brick(brick));
@@ -132,7 +132,7 @@ MCOR_ONE_COPY int4 mcor_brick_of_number(
     (int4)(m & 7, m >> 3 & 7, m >> 6 & 7, 0);
 }
 
-/* Returns the key of a brick. Sorted keys are in the order of slots. */
+/* Returns the key of a brick. Slots are in the order of these keys. */
 ulong mcor_brick_key(__global const mcor_rung* rungs, int4 brick)
 {
   return mcor_block_key(rungs, mcor_block_of_brick(brick)) * MCOR_BLOCK_BRICKS +

@@ -172,9 +172,9 @@ int4 mcor_place_of(int n)
   return (int4)(n & 3, n >> 2 & 3, n >> 4, 0);
 }
 
-/* mcor_up returns the step from a cell or brick to its neighbour d at higher coordinates (bits x,
- * y, z; 0 is the cell or brick itself). mcor_around returns the step to number d of 27: the cell or
- * brick itself (13), and all neighbours. */
+/* mcor_up returns the step from a cell or brick to its neighbour d at higher coordinates: bit 0 of
+ * d is one step along x, bit 1 along y, bit 2 along z. mcor_around returns the step to number d of
+ * 27: a cell or brick itself (d = 13), and all 26 neighbours. */
 int4 mcor_up(int d)
 {
   return (int4)(d & 1, d >> 1 & 1, d >> 2, 0);

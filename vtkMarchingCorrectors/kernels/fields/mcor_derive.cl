@@ -82,8 +82,8 @@ fixv mcor_derive_own(
 }
 
 /* One work-item = one group of particles. Reads arrays of fixed-point numbers, `stride` long each.
- * Writes the sums of at most MCOR_ARRAY_STEP arrays from `first_array` on. Point i is sorted
- * particle first + order[i]. */
+ * Writes the moments, and the slopes of at most MCOR_ARRAY_STEP arrays from `first_array` on, see
+ * mcor_derive_sums. Point i is sorted particle first + order[i]. */
 __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int first, __global const int* order, const int first_array, const int array_count,
   const int stride, __global const real* arrays, __global real* moments, __global real* slopes)
@@ -98,7 +98,7 @@ __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* off
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* Beyond the last array, the first one is read again. */
+    /* Where no array is left, array first_array is read again. */
     array[c] = arrays + (first_array + (c < count ? c : 0)) * (long)stride;
     own[c] = mcor_derive_own(&points, order, array[c] + first);
     for (int a = 0; a < 3; ++a)

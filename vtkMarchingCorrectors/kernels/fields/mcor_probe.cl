@@ -6,8 +6,8 @@
  * depend on other points. */
 
 /* One work-item = one point. Reads the point's node; node x is below 0 if no particle reaches the
- * point. Writes a sort key that puts points of a cell, and cells of a brick, next to each other.
- * first_x, ...: the first brick. */
+ * point. Writes a sort key that puts points of a cell, and cells of a brick, next to each other,
+ * and points that no particle reaches last. first_x, ...: the first brick. */
 __kernel void mcor_probe_key(const int count, const int first_x, const int first_y,
   const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
   __global const int4* node, __global ulong* keys)

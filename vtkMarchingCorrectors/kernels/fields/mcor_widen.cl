@@ -32,7 +32,7 @@
 #define MCOR_SIDED_FROM ((real)0.4f)
 #define MCOR_SIDED_TO ((real)0.6f)
 
-/* Particles j, one in each of the first `count` lanes. x: positions as in the grid. */
+/* Particles j, one in each of the first `count` lanes. x: positions, in fixed-point units. */
 typedef struct
 {
   fixv x[3];
@@ -84,11 +84,12 @@ int mcor_widen_place(
 /* Offset of particle k from the particles j along an axis, in fixed-point units. */
 #define MCOR_WIDEN_OFFSET(axis, position) MCOR_CONVERT_REALV(grid->position[k] - at->x[axis])
 
-/* Most factors s for which one walk over the particles makes the sums. */
+/* One walk over the particles makes the sums for at most this many factors s. */
 #define MCOR_WIDEN_LEVELS 3
 
-/* The crowd tells how many neighbours a particle j has, and where they are: sums over particles k
- * of n = max(0, 1 - (r / 2 h_j)^3), and of n times the offset of k from j. r: the distance. */
+/* The crowd tells how many neighbours a particle j has, and where they are. r is the distance from
+ * j to a fluid particle k. count: the sum of n = max(0, 1 - (r / (2 h_j))^3) over all k; offset:
+ * the sum of n (x_k - x_j), in fixed-point units. */
 typedef struct
 {
   realv count, offset[3];
@@ -184,8 +185,8 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
     { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv_h,
     grid.unit * inv_h, min(MCOR_LANES, particle_count - begin), plane
   };
-  /* Terms are not negative, so inside the fluid the nearest particles alone make the sum large
-   * enough. */
+  /* Only tensor kernels have negative terms. With other kernels, the nearest particles alone make
+   * the sum large enough inside the fluid, so particles farther away are left out. */
   const real reach = MCOR_TENSOR ? MCOR_SUPPORT * widest
                                  : fmax(MCOR_SUPPORT * widest * (real)0.54f, (real)2);
   mcor_crowd crowd = { 1, { 0, 0, 0 } };
@@ -276,8 +277,8 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
 }
 
 /* Whether all particles that may reach the query's box have the widest factor. Then the mean factor
- * in the box is the widest factor. Nearly all groups of particles are deep inside the fluid, where
- * this is so. */
+ * in the box is the widest factor. This is the case for nearly all groups of particles, because
+ * they are deep inside the fluid. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -296,10 +297,10 @@ bool mcor_widen_is_plain(
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, and from `limited` the weight sum
- * that each particle needs. Writes to `limited` the lower of the particle's factor and the mean
- * factor at the particle. A factor of 1 becomes 1 + share (mean - 1); the share is above 0 only for
- * a particle in a corner. The mean is the widest factor less the mean of (widest - factor), so it
- * is exact if all factors are the widest. */
+ * that each particle needs. Writes new factors to `limited`. A factor above 1 falls to the mean
+ * factor at the particle, if the mean is lower, but not below 1. A factor of 1 becomes 1 + share *
+ * (mean - 1); the share is above 0 only for a particle in a corner. The mean is made as the widest
+ * factor less the mean of (widest - factor), so it is exact if all factors are the widest. */
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real iso,
   const real margin, __global const real* factor, __global real* limited)
 {

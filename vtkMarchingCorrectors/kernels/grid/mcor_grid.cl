@@ -360,9 +360,10 @@ realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
   return MCOR_FMA((realv)one_sided, mcor_square(g[0], g[1], g[2]), (realv)1);
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (all 1 for a number
- * density). Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j;
- * for fluid, unless the kernel is a tensor kernel, times mcor_density_factor. */
+/* One work-item = MCOR_LANES sorted particles j. Reads the grid and masses m (1 for a number
+ * density), which are negative for solids. Writes sum_k |m_k| W(x_j - x_k, h_j) h_j^3 / norm, where
+ * h_j is the unscaled smoothing length. Unless the kernel is a tensor kernel, the sum of a fluid
+ * particle is also multiplied by mcor_density_factor. */
 __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int plane,
   const real one_sided, __global const real* mass, __global real* density)
 {

@@ -311,7 +311,7 @@ int mcor_query_particles(
  * mcor_list_lanes(chosen, count, lanes) lists which of the first `count` lanes are chosen, and
  * returns their number.
  *
- * For points (mcor_points.cl), whose lanes may read different particles at a time:
+ * For points (mcor_points.cl), lanes may read different particles at the same time:
  *
  *   mcor_reach reach;
  *   mcor_tile_init(&reach.tile);

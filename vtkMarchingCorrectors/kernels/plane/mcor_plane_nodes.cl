@@ -3,7 +3,8 @@
 
 /* Evaluates the field at nodes in the plane. Values have the same bits as in mcor_node_values. */
 
-/* How many work-items share a brick's 16 nodes, and how many rows of nodes along x each has. */
+/* MCOR_PLANE_ITEMS work-items share the 16 nodes of a brick in the plane. The nodes of one
+ * work-item lie in MCOR_PLANE_ROWS rows along x. */
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 

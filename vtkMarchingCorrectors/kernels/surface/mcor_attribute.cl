@@ -14,8 +14,9 @@
 
 #define MCOR_ATTRIBUTE_ARGS attribute_count, stride, attributes, means
 
-/* Writes the Shepard means of the attributes at a group of points. iso: as for mcor_evaluate.
- * evaluated: the last call of mcor_evaluate was for these points. */
+/* Writes the Shepard means of the attributes at a group of points; 0 where the sum of weights is
+ * too low. iso: as for mcor_evaluate. evaluated: the last call of mcor_evaluate was for these
+ * points. */
 MCOR_ONE_COPY void mcor_attribute_group(const mcor_grid* grid, mcor_query* query,
   const mcor_points* points, real iso, mcor_reach* reach, bool evaluated, MCOR_ATTRIBUTE_PARAMS)
 {

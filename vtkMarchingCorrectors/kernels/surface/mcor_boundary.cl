@@ -6,8 +6,8 @@
  *   S. Marrone, A. Colagrossi, D. Le Touze, G. Graziani: Fast free-surface detection and level-set
  *   function definition in SPH solvers. Journal of Computational Physics 229, 2010.
  *
- * It is the smallest eigenvalue of the symmetric part of the inverse of the renormalisation matrix.
- * This inverse is
+ * It is the smallest eigenvalue of the symmetric part of a matrix M. M is the inverse of the
+ * renormalisation matrix:
  *
  *   M(x) = sum V (x_j - x) (outer product) grad W(x - x_j)
  *

@@ -53,12 +53,12 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
  * from the surface. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
-/* The rounding error of a sum, relative to the iso value. MCOR_EDGE_ERROR never requires a smaller
- * difference from the iso value. The rounding error is 0 for a Shepard mean, because the sum of its
- * terms, relative to the iso value, is 0 at the surface. */
+/* The rounding error of a sum, relative to the iso value. MCOR_EDGE_ERROR never demands that a
+ * value comes closer to the iso value than this. The rounding error is 0 for a Shepard mean,
+ * because the sum of its terms, relative to the iso value, is 0 at the surface. */
 #define MCOR_SUM_ROUNDING (MCOR_FIELD == MCOR_SHEPARD ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
-/* A bracket of this length is not halved further. */
+/* A bracket of this length, as a share of the edge, is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
 /* Edges or lines. (ax, ay, az): the vector from end to end, in cubes; v0, v1: the values at the
@@ -97,7 +97,7 @@ MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* gr
   }
 }
 
-/* Fits the query to the edges from t = low to high. */
+/* Fits the query to the parts of the edges from t = low to t = high. */
 void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, realv high,
   mcor_points* points, mcor_query* query)
 {
@@ -185,10 +185,10 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     {
       return;
     }
-    /* `side` has the sign of the mean's numerator, less the iso value times the weight. This number
+    /* `side` has the sign of S - iso * w, where S / w is the mean and w the weight sum. S - iso * w
      * passes 0 between two nodes of positive weight on different sides of the iso value. Its sign
-     * differs from the sign of `value` only where a kernel with negative lobes makes the weight
-     * negative, beyond a pole of the mean. */
+     * differs from the sign of `value` only beyond a pole of the mean, where a kernel with negative
+     * lobes makes the weight negative. */
     const realv side =
       MCOR_FIELD == MCOR_SHEPARD && MCOR_TENSOR ? (at->fluid.value < 0 ? -value : value) : value;
     const fixv before = rising ? side < 0 : side >= 0;
@@ -216,12 +216,12 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
-/* One work-item = one group of vertices. Reads edges, and the values at their ends less the iso
- * value. With `lines`, reads the starts of lines from `offset` instead. Writes each vertex's
- * offset, value, gradient, trimming weight, number of evaluations and attributes. For a vertex on
- * an edge, writes to `linear` the linear position less the final position, as shares of the edge.
- * For a vertex on a line, writes to `linear` minus the final position, in cubes, if the vertex
- * reaches the surface, else 1. limit: most steps of a vertex; with 0, vertices stay at their linear
+/* One work-item = one group of vertices. Reads lattice edges, and the values at the ends of each
+ * edge, less the iso value. With `lines`, reads the starts of lines from `offset` instead. Writes
+ * each vertex's offset, value, gradient, trimming weight, number of evaluations and attributes. For
+ * a vertex on an edge, `linear` gets (linear position - final position), as a share of the edge.
+ * For a vertex on a line, `linear` gets -(final position), in cubes from the start; 1 if the vertex
+ * does not reach the surface. limit: most steps of a vertex; with 0, vertices stay at their linear
  * positions or starts, and `linear` is 0. */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming [III-D.3]: the quantity by which a vertex is trimmed, and the places of cut vertices.
- * Cut vertices move from linear cuts to where the field equals the iso value and the quantity
- * equals its threshold. */
+/* Trimming [III-D.3]: the number that decides whether a vertex is trimmed, and the places of cut
+ * vertices. Cut vertices move from linear cuts to where the field equals the iso value and this
+ * number equals its limit. */
 
 /* Least weight of the fluid itself for a Shepard mean at a vertex. */
 #define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
@@ -14,11 +14,12 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
   return MCOR_SOLIDS ? gradient[v].w : weight[v];
 }
 
-/* One work-item = one vertex. Writes the number by which the vertex is trimmed. If fluid_share is
- * not above 0, this number is `quantity`, and its limit is `threshold`. Else the limit is 0, and
- * the number is the smaller of two excesses: quantity - threshold, and the fluid's weight -
- * fluid_share times the weight. For the weight sum, only the second excess counts. A vertex without
- * a mean gets at most the limit, and so is outside. */
+/* One work-item = one vertex. Writes the number that decides whether the vertex is trimmed: the
+ * vertex is inside if this number is above a limit. If fluid_share <= 0, the number is `quantity`
+ * and the limit is `threshold`. Else the limit is 0, and the number is the smaller of (quantity -
+ * threshold) and (F - fluid_share * weight), where F is the fluid's own weight; if the field is the
+ * weight sum, the number is the second of these. A vertex without a mean gets at most the limit,
+ * and so is outside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)

@@ -4,11 +4,11 @@
 /* Gauges: where lines cross the free surface. All lines go through each step together, so the
  * device has many points at a time.
  *
- * Samples are a quarter of a smoothing length apart. Over this distance, the weight sum is almost a
- * parabola. If the middle one of three samples is an extremum, the parabola's own extremum goes
- * beyond this sample by at most an eighth of the greater difference between the samples. To be
- * safe, half of this difference is assumed. Where the extremum may then be beyond the level, the
- * line is sampled more finely.
+ * Samples are at most a quarter of the smallest smoothing length apart. Over this distance, the
+ * weight sum is almost a parabola. If the middle one of three samples is an extremum, the
+ * parabola's own extremum goes beyond this sample by at most an eighth of the greater difference
+ * between the samples. To be safe, half of this difference is assumed. Where the extremum may then
+ * be beyond the level, the line is sampled more finely.
  *
  * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
  * these samples, and the crossings between each sample and the next. The rank has the particles

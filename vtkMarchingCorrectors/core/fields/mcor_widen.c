@@ -31,8 +31,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Least excess of the weight sum over the iso value at a widened particle with neighbours on both
- * sides. */
+/* At a widened particle with neighbours on both sides, the weight sum is above the iso value by at
+ * least this number. */
 #define MCOR_WIDEN_MARGIN 0.1
 
 /* Numbers of neighbours, weighted by nearness. With fewer than the first number, a particle's

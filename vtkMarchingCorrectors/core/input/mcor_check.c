@@ -109,8 +109,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     MCOR_NEED(options->field != MCOR_WEIGHT_SUM || options->iso_values[i] > 0,
       MCOR_SAY(ISO_OF_FREE_SURFACE), options->iso_values[i]);
   }
-  /* Seeds at pairs of particles do not suffice for caps, which may need other cells. They do not
-   * work with a box or several ranks either, because a pair may lie outside of the box. */
+  /* Seeds at pairs of particles do not suffice for caps, which may need other cells. Such seeds do
+   * not work with a box or several ranks either, because a pair may lie outside of the box. */
   const char* other = options->capping ? "{capping}"
     : mcor_has_box(options)            ? "{box}"
     : options->ranks                   ? "Several processes"

@@ -35,8 +35,8 @@ typedef struct mcor_finder
   bool lacks_memory;
 } mcor_finder;
 
-/* Makes `memory` a part of f->found, which is freed with it. Returns `memory`; if there is no room
- * for it, frees it and returns NULL. */
+/* Adds `memory` to the memory that is freed with f->found. Returns `memory`; if the list of such
+ * memory cannot grow, frees `memory` and returns NULL. */
 void* mcor_own(mcor_finder* f, void* memory);
 /* Allocates memory that belongs to the result. */
 void* mcor_find_memory(mcor_finder* f, size_t bytes);

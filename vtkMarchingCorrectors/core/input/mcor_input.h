@@ -22,8 +22,8 @@ static inline double mcor_array_at(const mcor_array* array, int64_t i, int compo
                                   : (double)((const float*)array->data)[at];
 }
 
-/* Whether a particle is used: fluid always is, absent particles never are. Solids are used unless
- * they are ignored, or the surface is a free surface that does not end at solids. */
+/* Whether a particle is used. Fluid always is, absent particles never are; solids are used if the
+ * call uses solids, see context->kept.uses_solids. */
 static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||

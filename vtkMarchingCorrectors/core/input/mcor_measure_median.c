@@ -165,9 +165,9 @@ static bool mcor_choose_iso(
     value[i] = job->low;
   }
   const double *ends = value, *most = value + 2, median = value[4];
-  /* Avoids a median that shows nothing. If most values are alike (walls at rest, gas before a
-   * shock), the median's surface is noise or empty; if values span decades, the median is far below
-   * the greatest ones. */
+  /* The median may show nothing. If most values are alike (walls at rest, gas before a shock), the
+   * median's surface is noise or empty, so the middle of the range is chosen. If values span
+   * decades, the median is far below the greatest ones, so a geometric mean is chosen. */
   const double* span = most[0] < most[1] ? most : found;
   const double near = MCOR_NEAR_END * (span[1] - span[0]), ratio = ends[1] / ends[0];
   const bool at_end = median - span[0] <= near || span[1] - median <= near;

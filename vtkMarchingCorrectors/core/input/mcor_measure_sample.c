@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Chooses a few particles that stand for all: the particles whose positions have the least hashes.
- * So it does not matter in which order particles come, or how ranks share them. From such a sample
- * one smoothing length is estimated for particles that have none. */
+ * So it does not matter in which order particles come, or how ranks share them. If particles have
+ * no smoothing lengths, one length is estimated for all of them from such samples. */
 
 #include "mcor_input.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Measures the wall share: surfaces end where solids have this share of the weight sum, so that
- * they end on the layer of solids that faces the fluid. The wall share is the median of the solids'
+/* Measures the wall share: surfaces end where solids have this share of the weight sum. Surfaces
+ * then end on the layer of solids that faces the fluid. The wall share is the median of the solids'
  * shares at sampled solids. Each sample counts in proportion to the fluid's weight sum at the
  * sample, so solids that no fluid reaches do not count. Weights are added as whole numbers, so the
  * result depends neither on the order of the particles nor on how ranks share them. */

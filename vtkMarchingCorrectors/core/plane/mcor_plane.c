@@ -135,7 +135,8 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Across the plane, the bounds are the plane's coordinate minus and plus the largest support. */
+/* Across the plane, the bounds become the plane's coordinate (0 in the plane's own axes) minus and
+ * plus the largest support. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;

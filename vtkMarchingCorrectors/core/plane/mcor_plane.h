@@ -74,8 +74,8 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
  * to the caller's axes. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
 
-/* mcor_fill.c. If lines are to be filled, mcor_begin_fill checks that they can be, and evaluates
- * the nodes. */
+/* mcor_fill.c. If options.filled is set, mcor_begin_fill checks that the filled regions have an
+ * end, and evaluates the field at the nodes. */
 mcor_status mcor_begin_fill(mcor_context* context);
 /* mcor_take_lines keeps the trimmed lines of the current iso value; mcor_number_lines notes the
  * numbers of their points. Both do nothing if lines are not filled. */

@@ -173,8 +173,8 @@ extern "C"
   typedef struct mcor_array
   {
     /* [count][components]. Values must be finite, except in attributes, and where mcor_input.solid
-     * says otherwise. Not copied: keep the data until the call returns. NULL: see `memory`, then
-     * `constant`. */
+     * says otherwise. Not copied: keep the data until the call returns. NULL: the values are in
+     * `memory` or, if `memory` is NULL, too, all equal to `constant`. */
     const void* data;
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */

@@ -84,9 +84,9 @@ static mcor_status mcor_read_points(mcor_bunches* bunches)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Writes the node and the offset of each vertex in `starts`. The node is the node of the vertex
- * that is replaced. The offset leads from the node to the point where the correction begins, in
- * cells of the vertex's level. Also sets `last`. */
+/* Fills the arrays `node` and `offset` for the vertices in `starts`. A vertex has the node of the
+ * vertex that it replaces. The offset leads from this node to the point where the correction
+ * begins, in cells of the vertex's level. Also sets start->last. */
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -153,8 +153,8 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 /* ---- All of it ---- */
 
 /* Moves the slice's triangles whose corners still differ to the front of the slice. Each corner
- * becomes the number of the vertex that stays: in place of an appended vertex, the one that it
- * replaces. */
+ * becomes the place of its vertex in the mesh; an appended vertex counts as at the place of the
+ * vertex that it replaces, see mcor_end_bunches. */
 static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_bunches* bunches = data;

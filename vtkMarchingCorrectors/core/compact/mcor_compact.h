@@ -141,7 +141,7 @@ static inline void mcor_set_place(const mcor_bunches* bunches, int32_t v, int32_
   }
 }
 
-/* mcor_compact.c. Appends to the mesh the vertices that begin at `starts`, and corrects them. */
+/* mcor_compact.c. Appends to the mesh a vertex for each element of `starts`, and corrects it. */
 mcor_status mcor_add_vertices(mcor_bunches* bunches);
 
 /* mcor_compact_bunch.c. Finds the bunches. First merges each bunch that can be merged both if all

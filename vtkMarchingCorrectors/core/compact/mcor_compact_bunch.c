@@ -13,8 +13,8 @@
  * that would keep fewer than 8 triangles stays as it is.
  *
  * A bunch that fails this test may still be merged, if it can be merged while the bunches that pass
- * the test are. It then leans on the bunches beside it: if one of these is taken apart, so is the
- * bunch that leans on it. */
+ * the test are merged. It then leans on the bunches beside it: if one of these is taken apart, the
+ * leaning bunch is taken apart, too. */
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"
@@ -226,7 +226,7 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
 }
 
 /* Whether the edges of a fan form one closed ring through different vertices; for lines, whether
- * the two ends differ. */
+ * the fan has one edge, between different vertices. */
 static bool mcor_is_ring(const mcor_fan* fan, int corners)
 {
   if (corners == 2 || fan->count < 3)
@@ -288,9 +288,8 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return count >= least;
 }
 
-/* Whether a bunch can be merged. all: tests whether it can be merged both if no other bunch is
- * merged and if all other bunches are. Otherwise tests whether it can be merged beside the bunches
- * that are merged so far. */
+/* Whether a bunch can be merged. If `all` is set, this must hold in two cases: no other bunch is
+ * merged, and all other bunches are merged. Else it must hold with the bunches merged so far. */
 static bool mcor_can_merge(const mcor_bunches* bunches, int32_t bunch, bool all)
 {
   mcor_fan fan, merged = { 0 };

@@ -142,7 +142,7 @@ mcor_status mcor_take_apart(mcor_bunches* bunches)
 /* ---- Slivers ---- */
 
 /* A line on which a vertex is corrected begins at most this far from the vertex's node along each
- * axis, in lattice edges. So it ends within MCOR_POINT_EXTENT of the node. */
+ * axis, in lattice edges. So the line ends within MCOR_POINT_EXTENT of the node. */
 #define MCOR_FARTHEST_START 2.5
 
 /* Sets start->at to the mean of the vertices around a vertex, and start->worst to the greatest

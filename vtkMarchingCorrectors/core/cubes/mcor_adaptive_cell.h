@@ -19,7 +19,7 @@
  * A loop is cut into triangles such that no diagonal has both ends in one sub-face, in one whole
  * face or on one edge of the cell, because another cell could have the same diagonal. A trial of
  * all cases showed that this is always possible, except for loops that lie in one whole face; no
- * other cell can have their diagonals. test_core_cell.c tests cells side by side. The triangles
+ * other cell has the diagonals of such a loop. test_core_cell.c tests cells side by side. Triangles
  * with the shortest diagonals are chosen, with vertices taken in the middle of their edges; a
  * diagonal that lies in a face counts as long.
  *
@@ -35,7 +35,7 @@
 #define MCOR_ADAPTIVE_FUNCTION static inline
 #endif
 
-/* Costs of cutting a loop. A forbidden diagonal outweighs all the rest. */
+/* Costs of a loop's diagonals. One forbidden diagonal costs more than all allowed ones together. */
 #define MCOR_ADAPTIVE_FLAT 64 /* of a diagonal in a face; squared lengths are up to 48 */
 #define MCOR_ADAPTIVE_FORBIDDEN 8192
 

@@ -140,7 +140,6 @@ static mcor_status mcor_emit(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Makes vertices and triangles. */
 mcor_status mcor_march(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;

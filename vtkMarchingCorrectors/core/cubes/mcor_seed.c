@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Seed cells [III-C]. */
+/* Seed cells [III-C]: finds the bricks that the surface may reach, and evaluates their nodes. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -67,7 +67,7 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const mcor_box* box = &context->box;
   const int levels = context->lattice.levels;
-  /* With several levels, only leaves near the box exist, so the box needs no ring here. */
+  /* With several levels, the box sets no limit here, because only leaves near the box exist. */
   const int ring = box->is_part && levels == 1 ? box->ring : MCOR_ENDLESS_RING;
   const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
   /* The listed regions of level l are the elements first[l] to end[l] - 1 of bricks->regions. */

@@ -51,9 +51,9 @@ static mcor_status mcor_add_block(
   return MCOR_OK;
 }
 
-/* Adds blocks of one level: each block that has parts of split bricks of the next higher level, or
- * of their periodic images, and the blocks around it. So the blocks have all leaves beside coarser
- * leaves, and all bricks whose nodes leaves need. */
+/* Adds blocks of one level: each block that contains parts of split bricks of the next higher level
+ * (or of periodic images of these bricks), and the blocks around each such block. These blocks
+ * contain every leaf of the level, and every brick of the level with nodes that a leaf needs. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {

@@ -36,8 +36,8 @@ typedef struct mcor_tree_job
   atomic_bool failed;
 } mcor_tree_job;
 
-/* A particle, and the bricks that it may reach: `first` to `last`, of the level `level`, which is
- * one above its own. */
+/* A particle, and the bricks that it may reach: `first` to `last`. The level of these bricks is one
+ * above the particle's level. */
 typedef struct mcor_splitter
 {
   double x[3], reach; /* in cubes, from the lattice's origin */

@@ -23,7 +23,7 @@ typedef struct mcor_buffer
 } mcor_buffer;
 
 /* Memory of the host that a driver has locked. If the device has memory of its own, the host sees a
- * mapped buffer as a copy in such memory. */
+ * mapped buffer as a copy in this locked memory. */
 typedef struct mcor_locked
 {
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
@@ -85,8 +85,8 @@ typedef struct mcor_kernel
   double part; /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
 } mcor_kernel;
 
-/* Called between launches, and before a driver compiles, which may take seconds. A status other
- * than MCOR_OK ends the call. */
+/* Called between launches and, with `compiles`, before and while a driver compiles, which may take
+ * seconds. A status other than MCOR_OK ends the call. */
 typedef mcor_status (*mcor_observer)(mcor_context* context, bool compiles);
 
 typedef struct mcor_cl
@@ -186,9 +186,9 @@ mcor_status mcor_settle_device(
 void mcor_close_device(mcor_context* context);
 /* Chooses the variant of the kernels that is used from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
-/* Chooses the build, and begins to build those programs of a set that are missing, in threads of
- * their own, in the order in which a run needs them. Does nothing on the built-in device, or if
- * only one thread may be used. */
+/* Chooses the build, and begins to build the missing ones of `programs` (a set of bits) in threads,
+ * in the order in which a run needs them. Does nothing on the built-in device, or if only one
+ * thread may be used. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds building the missing programs takes; 0: not known. */
 double mcor_build_rest(mcor_cl* cl);
@@ -199,7 +199,7 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
  * of memory takes longer than most work in it, and successive phases and calls have arrays of
  * similar sizes. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
-/* Frees kept buffers until at most `most` bytes are held. */
+/* Frees kept buffers until all buffers together have at most `most` bytes, or none is kept. */
 void mcor_drop_kept(mcor_context* context, int64_t most);
 /* Frees the locked memory that is not in use. */
 void mcor_drop_locked(mcor_context* context);
@@ -208,9 +208,9 @@ void mcor_begin_buffers(mcor_context* context);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
-/* Maps a buffer for the host, to write all of it or to read it; without a copy where host and
- * device share memory. *data becomes NULL after a failure, and if `bytes` is 0 and there is no
- * buffer. */
+/* Maps the first `bytes` of a buffer, for the host to read or, if `write` is set, to write all of
+ * them. Nothing is copied where host and device share memory. *data becomes NULL after a failure,
+ * or if `bytes` is 0 and the buffer has no memory. */
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);

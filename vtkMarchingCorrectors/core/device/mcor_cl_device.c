@@ -115,8 +115,8 @@ static bool mcor_contains(const char* text, const char* part)
   return false;
 }
 
-/* Returns the index in the list of the device that the user named; -1: there is none. wanted: a
- * number, or a part of the name of the device or platform. *by_number: whether it is a number. */
+/* Returns the list index of the device that the user named; -1: there is none. wanted: the index or
+ * a part of the name of the device or its platform. *by_number: whether `wanted` is a number. */
 static int mcor_find_device(const mcor_device_list* list, const char* wanted, bool* by_number)
 {
   char* end = NULL;
@@ -166,7 +166,8 @@ static void mcor_query_device(mcor_cl* cl)
     cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof cl->width, &cl->width, NULL);
   cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && cl->width > 1;
   /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
-   * when they are launched. So it gains nothing if programs are built in parts. */
+   * when they are launched. So small programs save nothing there, nor on the built-in device, which
+   * compiles nothing. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
   /* A CPU with the form for GPUs counts as a device with memory of its own, so that tests reach the
    * code for such devices, too. */
@@ -176,9 +177,9 @@ static void mcor_query_device(mcor_cl* cl)
   cl->units = (int)units;
 }
 
-/* Distributes `count` processes over the devices of the chosen one's platform and type. Returns the
- * device of process *place. *count becomes the number of processes on this device, and *place the
- * number of this process among them. */
+/* Distributes `count` processes over the devices with the platform and type of device `chosen`.
+ * Returns the list index of the device for process *place. *count becomes the number of processes
+ * on this device, and *place the number of this process among them. */
 static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
 {
   int like[MCOR_DEVICE_LIMIT], n = 0;
@@ -318,8 +319,8 @@ static mcor_status mcor_fail_without_device(
     context, MCOR_DEVICE_ERROR, MCOR_SAY(NO_DEVICE), MCOR_POCL_HINT, mcor_driver_fault(list));
 }
 
-/* Starts the best device for a build; called if the user named no device. is_replaced: whether a
- * call with the default options would have taken another device. */
+/* Starts the best device for a build; called if the user named no device. Sets cl->is_replaced:
+ * whether a call with the default options would have taken another device. */
 static mcor_status mcor_start_default(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {

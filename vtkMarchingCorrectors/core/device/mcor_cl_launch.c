@@ -73,7 +73,7 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
 #define MCOR_PART_SECONDS 0.04
 #define MCOR_FIRST_PART 65536 /* work-items, on a GPU */
 /* MCOR_PART_TERMS: the most terms of sums in a part, for each compute unit of a CPU, in single
- * precision. MCOR_DOUBLE_TERMS: the same in double precision, with fewer lanes and more to do.
+ * precision. MCOR_DOUBLE_TERMS: the same in double precision, in which a term takes longer.
  * Usual launches fit into one part. Parts do not become larger, because the next work-items may
  * have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
@@ -108,10 +108,10 @@ static mcor_status mcor_enqueue_part(
   return MCOR_OK;
 }
 
-/* Launches all work-items in parts. The work of an item grows with the number of particles that
- * reach a point. On the built-in device parts cost nothing, so each launch begins with small parts,
- * and no part becomes large. A driver may compile a kernel once more for a part that begins behind
- * item 0. */
+/* Launches all work-items in parts, which should take MCOR_PART_SECONDS each. On a CPU, a part has
+ * the fewer work-items, the more particles reach a point (cl->terms). On the built-in device, parts
+ * cost nothing, so each launch begins with small parts. With a driver, a launch begins with the
+ * kernel's last part size, because for a second part the kernel may be compiled once more. */
 static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)
 {

@@ -19,12 +19,13 @@
 
 #define MCOR_ARGUMENT_LIMIT 64
 #define MCOR_BUFFER_ALIGNMENT 128
-/* Below this number of light work-items (groups of 64, some nanoseconds each) a launch is not worth
- * waking threads. Any medium or heavy launch (groups of one) is worth it. */
+/* A launch of fewer light work-items than this does not wake other threads: a light work-item takes
+ * only some nanoseconds. Light work-items come in groups of 64, medium and heavy ones in groups of
+ * one. A medium or heavy launch wakes threads even for few work-items. */
 #define MCOR_FEW_LIGHT_ITEMS 8192
-/* How many parts of a launch each thread gets. There are many, because work-items take different
- * times, heavy ones above all, and threads without work wait for the last part. A part has at most
- * MCOR_PART_ITEMS work-items. */
+/* How many parts each thread gets of a light launch, and of a medium or heavy one. There are many
+ * parts, because work-items take different times, heavy ones above all, and threads without work
+ * wait for the last part. MCOR_PART_ITEMS: the most work-items of a part. */
 #define MCOR_LIGHT_PARTS 16
 #define MCOR_HEAVY_PARTS 64
 #define MCOR_PART_ITEMS 4096

@@ -94,7 +94,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   return base;
 }
 
-/* Makes room for one element per particle. Writes zeros behind, which vector loads may read. */
+/* Makes room for one element per particle, and writes zeros behind: vector loads may read there. */
 static mcor_status mcor_reserve_padded(
   mcor_context* context, mcor_buffer* buffer, int count, size_t size)
 {
@@ -226,7 +226,8 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   cl_int first = INT32_MAX;
   mcor_find_evaluated(context, low, high);
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
-  /* A volume grows with the cube of the scale, in two dimensions with its square. */
+  /* mcor_grid_weight divides by the cube of its argument h_scale. In two dimensions, the argument
+   * is such that this cube is the square of the scale. */
   const double scale = context->run.options->h_scale;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(context->space.flat ? mcor_cube_root(scale * scale) : scale),

@@ -93,8 +93,8 @@ mcor_status mcor_sort(
   const int segments = mcor_segments(context, count);
   const int key_bits = mcor_bits_below(key_limit), value_bits = mcor_bits_below((uint64_t)count);
   const size_t n = (size_t)count;
-  /* Chooses how many bits one round treats: rounds are as few as possible and of about equal size,
-   * and the histogram is no larger than the sorted array. */
+  /* Chooses how many bits one round treats. Rounds are as few as possible, and of about equal size.
+   * With more than 8 bits in a round, the histogram is no larger than the sorted array. */
   int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
   while (most > 8 && segments << most > count)
   {

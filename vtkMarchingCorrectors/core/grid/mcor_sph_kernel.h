@@ -9,8 +9,8 @@
  * A kernel is W = norm / h^3 * w(q), q = r / h. w is one branch-free expression for all q >= 0, and
  * 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h). All others
  * must be positive and fall with q. The rounding error of w must be at most 96 units of rounding.
- * Bounds of the field rely on both (mcor_bound.cl). All kernels use only operations that every device
- * rounds alike: no sine, no power, no exponential. */
+ * The bounds of the field (mcor_bound.cl) rely on these two rules. All kernels use only operations
+ * that every device rounds alike: no sine, no power, no exponential. */
 
 /* A row has what the core knows of a kernel. Rows are in the order of mcor_sph_kernel:
  *
@@ -221,7 +221,7 @@ MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
  * t = 0 to 1 for the least relative error, one after the other, with the earlier ones rounded. The
  * error of w is below 5e-10 in single and 1e-16 in double precision; the slopes are the
  * polynomial's, with errors below 3e-9 and 1e-15. Rounding adds relative errors of w up to 1.5e-6
- * and 3e-15, as with the quintic spline. FIRST has the last two coefficients. */
+ * and 3e-15, as with the quintic spline. FIRST takes the coefficients of the highest two powers. */
 #if defined(MCOR_W_ON_HOST) || MCOR_DOUBLE
 #define MCOR_SINC(FIRST, NEXT)                                                                     \
   FIRST(1.518996494692584e-10, 5.733052293908227e-09)                                              \
@@ -246,7 +246,7 @@ MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
 #define MCOR_SINC_A(q) fmax(MCOR_FMA((real)-0.5, q, (real)1), (realv)0)
 #define MCOR_SINC_FIRST(last, before) realv p = MCOR_FMA((real)last, t, (real)before);
 #define MCOR_SINC_NEXT(c) p = MCOR_FMA(p, t, (real)c);
-/* Macros with _D also compute d = p'; macros with _E also d = p' and e = p'' / 2. */
+/* Macros with _D also compute d = p'; macros with _E compute d and e = p'' / 2, too. */
 #define MCOR_SINC_FIRST_D(last, before)                                                            \
   realv d = (realv)(real)last;                                                                     \
   MCOR_SINC_FIRST(last, before)

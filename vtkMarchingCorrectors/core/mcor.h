@@ -372,7 +372,7 @@ extern "C"
      * bits, except for the rounded coordinate along the period. Each period is a whole number of
      * cubes: the cube size is reduced to fit, by less than half. A box may lie across the sides of
      * a period: the period is then moved, see mcor_move_period. x0 = x1 (default 0): not periodic.
-     * mcor_probe and mcor_derive read this, too; their points may lie anywhere. */
+     * mcor_probe and mcor_derive read the period, too; a probe's points may lie anywhere. */
     double periodic[6];
     /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are
      * above the iso value; with a box, at those sides of its cells that lie on a periodic side.
@@ -399,7 +399,7 @@ extern "C"
      * measure over the inputs of all ranks; each particle must be in exactly one of the inputs. (A
      * rank without particles has count 0, and data that are not NULL where the other ranks have
      * data.) The result has the same bits as for all particles in one input, except for
-     * attribute_not_finite, which is the least index that such a particle has on its own rank.
+     * attribute_not_finite: this is the least index that a NaN or infinity has on its own rank.
      * mcor_extract needs these globals; each cell must be in the box of exactly one rank. A
      * function whose comment does not mention ranks ignores this member. Borrowed until return. */
     const mcor_ranks* ranks;
@@ -476,8 +476,8 @@ extern "C"
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
     /* seed_cells: the cells where the search for the surface begins. With complete seeds and
-     * uniform cubes, these are the cells that bounds of the field, each for 8 x 8 x 8 nodes, do not
-     * exclude. With complete seeds and adaptive cubes: the cells of leaves (undivided bricks of
+     * uniform cubes: all cells, except where a bound of the field in 8 x 8 x 8 nodes excludes a
+     * surface. With complete seeds and adaptive cubes: the cells of leaves (undivided bricks of
      * cubes) through which the surface passes. With pair seeds: the cells between the two particles
      * of each pair. seed_cells_not_intersected: how many of the seed cells the surface does not
      * use. These counts and most of the following ones are summed over iso values. */
@@ -520,7 +520,7 @@ extern "C"
      * positions and sums may add. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
-    int64_t trim_vertices, trim_vertices_linear; /* linear: at the linear cut, off the iso value */
+    int64_t trim_vertices, trim_vertices_linear; /* linear: with boundary flag 2 */
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
@@ -549,12 +549,12 @@ extern "C"
     double* points;          /* [point_count][3], unit L */
     int32_t* triangles;      /* [triangle_count][3], point indices */
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
-    /* Two dimensions: polylines, and triangles only of the filled region. Line l has the points
-     * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on
-     * its left, seen from the positive end of the constant axis. A closed line ends with its first
-     * point. Open lines come first. Normals lie in the plane; with `filled`, all normals are
-     * normals of the triangles, along the constant axis. Where statistics count triangles, they
-     * count lines between two points; lines have no triangle_keys. */
+    /* In two dimensions, a surface has polylines; with `filled`, also the triangles of the filled
+     * region. Line l has the points line_points[line_offsets[l]] to line_points[line_offsets[l + 1]
+     * - 1]. Values are greater on the line's left, seen from the positive end of the constant axis.
+     * A closed line ends with its first point. Open lines come first. Normals lie in the plane, but
+     * with `filled`, all normals are along the constant axis. Statistics that count triangles count
+     * each part of a line between two points. Lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count] = line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
@@ -661,9 +661,9 @@ extern "C"
     int64_t count;
   } mcor_field_data;
 
-  /* Finds the period in an array of field data: PeriodicBounds, BoxSize (GADGET, SWIFT), or box if
-   * an array boundaryType marks axes as periodic (SPH-EXA). Case, blanks, "_" and "-" of names do
-   * not matter. Returns how many numbers tell the period: 6 bounds, as in mcor_options.periodic; 3
+  /* Finds the period in an array of field data: PeriodicBounds, BoxSize (GADGET, SWIFT), or `box`,
+   * if an array boundaryType marks axes as periodic (SPH-EXA). Case, blanks, "_" and "-" of names
+   * do not matter. Returns how many numbers tell the period: 6 bounds, as in mcor_options.periodic; 3
    * lengths, see mcor_place_period; 0 if no array gives a period. which: becomes the index of the
    * array, or -1; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
@@ -695,7 +695,7 @@ extern "C"
    * with the type, offset and stride of `to`; bytes between the values stay. If both types are the
    * same, bytes are copied, so that whole numbers may pass as floats of their size. The array is
    * written when the call returns. Fails with MCOR_INVALID_ARGUMENT if the buffer is too small, or
-   * the components differ. */
+   * if the numbers of components differ. */
   mcor_status mcor_store(
     mcor_context* context, const mcor_array* from, int64_t count, const mcor_array* to);
 
@@ -704,22 +704,22 @@ extern "C"
    * values, the suggestion is the middle of these 90 %, or of the range if these values are all
    * equal. If all values are positive, and all but the lowest and highest 2 % span at least three
    * decades (but no more than six if the median is at an end), the suggestion is the logarithmic
-   * middle of these 96 %. Reads only the scalar and the solids of the input; over all ranks unless
+   * middle of these 96 %. Reads only the scalar and the solids of the input, of all ranks unless
    * `ranks` is NULL. Returns 0 and changes nothing if no value is finite, if mcor_extract would
    * refuse the form of the scalar, or if another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* Returns 2 or 3, the dimension of a call with this input and this mcor_options.dimension; over
-   * all ranks unless `ranks` is NULL. Reads only the positions and the solids. */
+  /* Returns 2 or 3, the dimension of a call with this input and this mcor_options.dimension. Reads
+   * only the positions and the solids, of all ranks unless `ranks` is NULL. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* Returns whether the free surface is what users want to see first. Returns 0 for a gas that
-   * fills its bounds: the smoothing lengths of its particles reach 98 % of them. Returns 1 if there
-   * are solids or no fluid, if the fluid leaves room within its bounds, or if it is a liquid: it
-   * has one smoothing length, and densities that differ by no more than a factor of 2. Reads
-   * positions, solids, smoothing lengths and densities, of valid form; of all ranks unless `ranks`
-   * is NULL. */
+   * fills its bounds: 98 % of their volume is within about a smoothing length of a particle.
+   * Returns 1 if there are solids or no fluid, if the fluid leaves room within its bounds, or if it
+   * is a liquid: it has one smoothing length, and densities that differ by no more than a factor of
+   * 2. Reads positions, solids, smoothing lengths and densities, of all ranks unless `ranks` is
+   * NULL; their form must be valid. */
   int mcor_has_free_surface(const mcor_input* input, const mcor_ranks* ranks);
 
   /* The usual `eta` of mcor_find_smoothing_lengths, which sets the number of neighbours. */
@@ -746,15 +746,15 @@ extern "C"
   mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
     int64_t count, double* densities, mcor_message* why);
 
-  /* Returns the least smoothing length of the fluid, as the input has it; 1 with
-   * estimate_smoothing_length, infinite without fluid. */
+  /* Returns the least smoothing length of fluid particles, as the input has it. Returns 1 with
+   * estimate_smoothing_length, infinity without fluid. */
   double mcor_least_smoothing_length(const mcor_input* input);
 
   /* Returns about how many cubes (in a plane: squares) of the virtual grid the fluid fills, in the
    * box if there is one. A particle fills (h / 1.3)^3, in a plane (h / 1.3)^2. Returns 0 without
    * fluid, or if the smoothing length is to be estimated but options.cube_size is given, because
-   * the ratio of the two is then not known. least: mcor_least_smoothing_length, over all ranks that
-   * share the particles; the results of ranks add up. */
+   * the ratio of the two is then not known. least: mcor_least_smoothing_length, the least of all
+   * ranks that share the particles. The sum of the ranks' results is the number for all ranks. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
   /* Returns a warning that a run of `cells` cells may take long; no message if it will not. */
@@ -933,8 +933,8 @@ extern "C"
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
    * weight sum is at least the level, as for mcor_gauge. The tolerance of `area` is 2.5e-6 times
-   * the area of the section. Times the greatest speed, this is the tolerance of volume_flux; times
-   * the greatest speed and density, of mass_flux. Options, globals and ranks are as for mcor_gauge.
+   * the area of the section. The tolerance of volume_flux is this area times the greatest speed; of
+   * mass_flux, times the greatest density, too. Options, globals and ranks are as for mcor_gauge.
    * *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
@@ -950,8 +950,8 @@ extern "C"
      * may be infinite. All 0: the box is the period; along axes without a period, it contains all
      * that particles reach. If the line of sight is along x, y or z, a particle counts if its
      * kernel reaches the image and its position along this axis is in the box. For another line of
-     * sight, a particle counts if its position is in the box. A particle that counts does so with
-     * its whole kernel. */
+     * sight, a particle counts if its position is in the box. The whole kernel of a particle
+     * that counts is integrated. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
     /* [count], 1 component. The image shows means, sum V B A F / sum V B F. V: volumes; B: weights;
@@ -977,10 +977,10 @@ extern "C"
    * the most that one particle adds to a pixel. Without a scalar, integrates the density: a pixel
    * then has the mass that falls into it, divided by its area. In two dimensions, the image shows
    * the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and
-   * progress apply; if volumes are computed, all options of mcor_probe do. The result has the same
-   * bits for any order of the particles. Each rank gets the whole image. If volumes are computed or
-   * h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and `counted`, so
-   * that each particle counts once. *projection is overwritten. */
+   * progress apply; if volumes are computed, all options of mcor_probe apply. The result has the
+   * same bits for any order of the particles. Each rank gets the whole image. If volumes are
+   * computed or h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and
+   * `counted`, so that each particle counts once. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   /* Finds the size and place of the image, but not its values. */

@@ -85,7 +85,7 @@ static mcor_status mcor_begin_building(
   return mcor_build_ahead(context, &build, mcor_list_programs(context, input, options, has_solids));
 }
 
-/* Appends the surface of one iso value. */
+/* Makes the surface of iso value number i, and appends it to `surface`. */
 static mcor_status mcor_extract_iso(
   mcor_context* context, const mcor_input* input, int i, mcor_surface* surface)
 {
@@ -94,10 +94,10 @@ static mcor_status mcor_extract_iso(
   const double value = options->iso_values[i];
   context->run.iso = (mcor_iso){ i, value, value - context->value_shift };
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
-  /* [III-B, III-C] */
+  /* Seeds [III-B, III-C]. */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
   MCOR_TRY(mcor_select_seeds(context, input));
-  /* [III-D.1] */
+  /* Marching cubes [III-D.1]. */
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
   MCOR_TRY(mcor_march(context));
@@ -105,7 +105,7 @@ static mcor_status mcor_extract_iso(
   {
     mcor_release_nodes(context);
   }
-  /* [III-D.2] */
+  /* Correction [III-D.2]. */
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step, begin + 0.7 * step));
   if (context->mesh.march_count > 0 || mcor_makes_caps(context))
@@ -113,7 +113,7 @@ static mcor_status mcor_extract_iso(
     MCOR_TRY(mcor_load_attributes(context, input, 0));
   }
   MCOR_TRY(mcor_correct(context));
-  /* [III-D.3] */
+  /* Trimming, caps, compaction and filling [III-D.3]. */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context));
   context->mesh.cap_first = context->mesh.vertex_count;
@@ -130,7 +130,7 @@ static mcor_status mcor_extract_iso(
   {
     MCOR_TRY(mcor_take_lines(context));
   }
-  /* [III-D.4] */
+  /* Output [III-D.4]. */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
   if (last && input->particles_version == 0 && !mcor_output_evaluates(context) && !options->filled)

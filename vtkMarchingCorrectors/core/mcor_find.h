@@ -51,7 +51,7 @@ extern "C"
     int64_t stride[2]; /* bytes from tuple to tuple, and from component to component; 0: no gaps */
   } mcor_named;
 
-  /* The quantity that an array gives, or one value for all particles. */
+  /* What an array is used for. */
   typedef enum mcor_role
   {
     MCOR_ROLE_SMOOTHING_LENGTH = 0, /* the first four may be given as one value */
@@ -81,7 +81,7 @@ extern "C"
     MCOR_WANT_FLUID = 128  /* if no fluid is given: an array that tells it, see find_fluid */
   } mcor_want;
 
-  /* A range in which the values of an array must be. */
+  /* A range of an array's values; tells which particles count, see mcor_request.only. */
   typedef struct mcor_only
   {
     const char* name;
@@ -101,11 +101,12 @@ extern "C"
     int estimate_smoothing_length; /* as in mcor_input */
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
-    /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID; for
-     * blocks joined to one set, the name given may be "Block: NAME". find_fluid: 0: MCOR_WANT_FLUID
-     * only names an array that seems to tell fluid, in unused_type; 1: an array that tells fluid
-     * without doubt is used; 2: as 1, and unused_type says so if there is no array of either
-     * kind. */
+    /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID. If
+     * the name given is "Block: NAME", the array MCOR_WALL_BLOCK is used if there is one; fluid
+     * particles then have the value 0. find_fluid tells what MCOR_WANT_FLUID does. 0: no array is
+     * used; unused_type names an array that may tell which particles are fluid. 1: an array that
+     * tells this without doubt is used; else as 0. 2: as 1, but if there is no array to name,
+     * unused_type says so. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;
@@ -116,8 +117,9 @@ extern "C"
     double within[6];      /* bounds of the particles that count, unless all are 0 */
     const mcor_only* only; /* [only_count]; a value must be in one of its array's ranges */
     int only_count;
-    /* Names of arrays, one per line, or NULL. taken: arrays that are computed; excluded: other
-     * arrays that must not be attributes. */
+    /* Names of arrays, one per line, or NULL. taken: the surface's computed arrays; neither an
+     * attribute nor the array of iso values gets these names. excluded: other arrays that must not
+     * be attributes. */
     const char *taken, *excluded;
     int filled; /* nonzero: a filled region is made; its iso values are not values of the scalar */
     int has_iso_values; /* nonzero: there is an array of iso values; no attribute has its name */
@@ -129,7 +131,8 @@ extern "C"
   typedef struct mcor_found
   {
     mcor_input input; /* valid until mcor_free_found */
-    /* The index of each role's array. The first four roles have -1 if the input lacks the array. */
+    /* The index of each role's array. For the first four roles, the index is -1 also if the input
+     * does not use the array. */
     int which[MCOR_ROLE_COUNT];
     /* Each role's array as the core reads it, or its one value, even if the input does not use it.
      * For MCOR_ROLE_FLUID, only the name is set. */

@@ -102,7 +102,7 @@ extern "C"
       int64_t* all_count);
     void* user;
     /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: only periods
-     * bound the whole surface. A vertex that several ranks have is counted by one of them. */
+     * bound the whole surface. Statistics count a vertex that several ranks have on one of them. */
     double whole_box[6];
   };
 
@@ -120,7 +120,7 @@ extern "C"
 
   /* Measures an input for options.globals of later calls, in this or another context, with
    * otherwise the same options. Overwrites *globals; free it with mcor_free_globals.
-   * MCOR_INVALID_DATA if no rank has any particles. */
+   * Fails with MCOR_INVALID_DATA if no rank has any particles. */
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
@@ -138,7 +138,7 @@ extern "C"
     double reach, double margin);
 
   /* Area and volume of a surface in parts, with the same bits as in the statistics of the whole
-   * surface. */
+   * surface. The numbers 1 and 2 tell when a member is reduced, see mcor_measure_terms. */
   typedef struct mcor_measures
   {
     double origin[3];       /* any point; for the same bits, the first one of the whole surface */

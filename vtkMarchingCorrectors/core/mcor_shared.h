@@ -45,7 +45,7 @@ typedef struct mcor_level
 /* Bit that is added to the key of a triangle's cell if the cell is outside the box, in the ring of
  * cells around the box. */
 #define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
-/* Set together with MCOR_RING_CELL if another rank owns the cell. */
+/* Bit that is added, too, if another rank owns the cell. */
 #define MCOR_OTHERS_CELL ((MCOR_TYPE(ulong))1 << 62)
 /* This bit makes the key of a cap's square greater than the key of any owned cell. */
 #define MCOR_CAP_SQUARE ((MCOR_TYPE(ulong))1 << 62)
@@ -142,11 +142,11 @@ typedef struct mcor_rung
 /* Groups of points close to each other that one work-item evaluates together. */
 #define MCOR_CLUSTER_OF(lanes) ((lanes) == 1 ? 1 : 16)
 
-/* A Shepard mean needs this weight of the fluid itself. At nodes, cells could otherwise reach over
- * voids that solids alone fill, and rounding noise at a kernel's rim would count as a value. At
- * vertices, between nodes, the weight may pass 0 if the kernel has negative lobes, and the mean has
- * a pole there. With this weight, the mean is no further from the particles' values than a linear
- * extrapolation. */
+/* There is no Shepard mean where the fluid's own weight is less than this. If nodes needed no such
+ * weight, cells could extend into voids that only solids fill, and rounding noise at a kernel's rim
+ * would count as a value. Vertices lie between nodes: if the kernel has negative lobes, the weight
+ * may pass 0 there, and the mean has a pole. Where the weight is at least 0.05, the mean is no
+ * further from the particles' values than a linear extrapolation. */
 #define MCOR_LEAST_NODE_WEIGHT 1e-3
 #define MCOR_LEAST_VERTEX_WEIGHT(has_lobes) ((has_lobes) ? 0.05 : 1e-3)
 

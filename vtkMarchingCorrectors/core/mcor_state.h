@@ -255,7 +255,8 @@ typedef struct mcor_component
   double low, high;    /* range over fluid particles; a probe's means lie within it */
 } mcor_component;
 
-/* The components of attributes that vary, and which of them the device holds. */
+/* The attribute components to evaluate: for a surface, the ones that vary; for samples, all. The
+ * device holds `count` of them, from component `first` on. */
 typedef struct mcor_attributes
 {
   mcor_component* varying; /* [varying_count] */

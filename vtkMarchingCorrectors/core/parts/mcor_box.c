@@ -55,8 +55,8 @@ void mcor_move_period(mcor_options* options)
   }
 }
 
-/* The field is evaluated up to this distance, in cubes, from the ring's nodes: trimming may move a
- * vertex by 3/4 of a cube. */
+/* The field is evaluated up to this distance, in cubes, from the outermost nodes of the ring of
+ * cells around the owned cells: trimming may move a vertex by 3/4 of a cube. */
 #define MCOR_BOX_MARGIN 1.25
 
 /* A box does not need a particle whose support misses the box by more than this, in cubes. */
@@ -64,11 +64,12 @@ void mcor_move_period(mcor_options* options)
 
 /* The same margin with adaptive cubes, in cells of the particle's level; a particle does not reach
  * larger cells. A cell of the ring, or a cell whose centre is in the box, has nodes at most two
- * cells away from the box; trimming may move a vertex by another 3/4 of a cell, into cells half as
- * large. For a wider ring see mcor_level_ring. */
+ * cells away from the box. Trimming may move a vertex 3/4 of a cell further, and then into a cell
+ * half as large. For a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
-/* The margin of a probe's points, in cubes: rounding moves particles by less. */
+/* For a probe, the field is evaluated up to this distance, in cubes, from the cells around the
+ * points. Rounding moves particles by less. */
 #define MCOR_POINTS_MARGIN 0.25
 
 /* Greatest distance between the particles of a pair, in smoothing lengths, rounded up. */

@@ -177,18 +177,18 @@ static mcor_status mcor_fit_period(
 #define MCOR_STEP_RANGE 16
 
 /* Chooses the edges in fixed-point units. Positions are numbers of units, so distances are right if
- * the edges have the same ratios as their numbers of units. For the longest edge, tries the
- * greatest 1 / MCOR_STEP_RANGE of all possible numbers, but at most MCOR_STEP_TRIES of them. Takes
- * the number with the best ratios, which are right to about 1e-8. */
+ * the edges have the same ratios as their numbers of units. For the longest edge, tries a cube's
+ * number of units, and smaller numbers down to 1 - 1 / MCOR_STEP_RANGE of this number, but at most
+ * MCOR_STEP_TRIES of them. Takes the one with the best ratios, which are right to about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;
   const double* edge = lattice->edge;
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
-  /* spared: the least number of trailing zeros of an edge as a fixed-point number. Nodes need as
-   * many zeros as particles with the longest supports have, and so many that a double holds the
-   * nodes exactly. */
+  /* spared: how many of the lowest bits of unequal edges, in fixed-point units, are 0. These are as
+   * many as in positions of particles with the longest supports, or more if a double could not hold
+   * the nodes exactly otherwise. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;

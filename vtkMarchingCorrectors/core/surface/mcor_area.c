@@ -128,8 +128,8 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* Measures volumes from one of the points, because coordinates may be large. mcor_plane.c measures
- * lines. */
+/* Coordinates may be large, so the first point is the origin of the tetrahedra whose volumes are
+ * added. Lines are measured in mcor_plane.c. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
   mcor_measures measures = { .triangle_count = surface->triangle_count };

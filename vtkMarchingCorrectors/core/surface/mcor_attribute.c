@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT
- * components that vary are evaluated during the correction, which has gathered each vertex's
- * particles. The others follow in groups of the same size, at the vertices of the finished mesh. If
- * all values (masses, smoothing lengths) are equal, their mean is exactly this value. */
+/* Attributes (other particle arrays) at the surface's points [III-D.4]. The first
+ * MCOR_ATTRIBUTE_LIMIT components that vary are evaluated during the correction, which has gathered
+ * each vertex's particles. Further components that vary follow in groups of the same size, at the
+ * vertices of the finished mesh. A component that does not vary keeps its exact value. */
 
 #include "mcor_adaptive.h"
 #include "mcor_input.h"

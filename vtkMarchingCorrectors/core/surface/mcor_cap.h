@@ -215,8 +215,8 @@ typedef struct mcor_cap_job
   /* The number of each triangle's square, see mcor_triangle_cell.c. */
   MCOR_LIST(cl_ulong) cells;
   int64_t owned_count;
-  /* The square that is being cut: its lowest node, its number, and how many vertices it has looked
-   * up. */
+  /* The square that is being cut: its side, its lowest node, its number, and how many vertices have
+   * been looked up for the square. */
   const mcor_cap_nodes* side;
   cl_int lowest[3];
   cl_ulong number;

@@ -326,8 +326,8 @@ static mcor_status mcor_visit_cap_square(
 /* The most steps in which a cut moves. They suffice, because every fourth step halves the
  * bracket. */
 #define MCOR_PLACE_STEPS 100
-/* A cut stays where it is if its margin is below this: a few units of rounding in single
- * precision. */
+/* A cut stays where it is if the magnitude of its margin is below this: a few units of rounding in
+ * single precision. */
 #define MCOR_PLACE_ROOT 1e-6
 
 /* Moves a cut within its bracket, unless its margin is 0 up to rounding. If an end of the bracket

@@ -116,9 +116,10 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, mcor_cap_nodes* no
   return MCOR_OK;
 }
 
-/* Adds the bricks that particles may reach. A cube around the support, rounded up a little, is
- * extended by one node, because a square is found by its lowest node, and by another node for
- * rounding. Tests the side's axis first, because most particles are far from the side. */
+/* Adds the bricks that particles may reach: for each particle, the bricks in a box around the
+ * support, which is enlarged by 0.1 %. The box extends two nodes further: one node because a square
+ * is found by its lowest node, the other for rounding. Tests the side's axis first, because most
+ * particles are far from the side. */
 static mcor_status mcor_add_reached(
   mcor_context* context, mcor_cap_nodes* nodes, mcor_table* clusters)
 {
@@ -272,11 +273,11 @@ static void mcor_take_cap_node(
   }
 }
 
-/* Goes brick by brick, so that successive points are near each other. On the side, asks for nodes
- * above the iso value, whose margins are needed, and for all nodes of bricks that marching has not
- * evaluated. One node further in, asks for nodes of bricks that marching has not evaluated, if the
- * node beside them on the side is valid and above the iso value. A square without vertices is
- * capped only if these inner nodes are valid. */
+/* Goes brick by brick, so that successive points are near each other. Without is_inner, evaluates
+ * nodes on the side: the nodes above the iso value, because their margins are needed, and all nodes
+ * of bricks that marching has not evaluated. With is_inner, evaluates nodes one node further in, if
+ * marching has not evaluated their brick, and if the node beside them on the side is valid and
+ * above the iso value. A square without vertices is capped only if these inner nodes are valid. */
 mcor_status mcor_ask_cap_nodes(mcor_context* context, mcor_cap_nodes* nodes, bool is_inner)
 {
   mcor_cap_points points = { .take = mcor_take_cap_node, .data = nodes };

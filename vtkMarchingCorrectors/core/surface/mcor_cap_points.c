@@ -13,7 +13,7 @@
 
 /* ---- The field ---- */
 
-/* Evaluates the points of the batch, which is then empty. */
+/* Evaluates the points of the batch, calls p->take for each of them, and empties the batch. */
 static mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)
 {
   if (p->count == 0)

@@ -142,9 +142,9 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
 }
 
-/* Computes the normal, opposite to the gradient; at a vertex that only caps have, the normal of the
- * sides that it is on. The normal is zero if the gradient vanishes. Scales first, because the
- * square of a small gradient may underflow, and the square of a large one may overflow. */
+/* Computes the normal. It is opposite to the gradient; at a vertex that only caps have, it points
+ * out of the sides that the vertex is on. The normal is zero if the gradient vanishes. Divides by
+ * the greatest component first, because squares of components may underflow or overflow. */
 static void mcor_store_normal(
   const mcor_download* d, int64_t v, const double gradient[3], float normal[3])
 {

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Each triangle keeps its cell, as a key, through trimming. The key says whether this call owns the
- * triangle, see mcor_box.c: triangles of the ring are removed from the surface at the very end,
- * with the points that only they use. Keys ascend in the order of the whole surface's triangles,
- * whatever part of the surface a call makes. */
+/* Each triangle keeps the key of its cell through trimming. The key says whether this call owns the
+ * triangle, see mcor_box.c. Triangles of the ring (the cells around the owned cells) are removed
+ * from the surface at the very end, with the points that only they use. Keys ascend in the order of
+ * the whole surface's triangles, whatever part of the surface a call makes. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"

@@ -27,7 +27,7 @@ typedef struct mcor_probe_run
   int count, inside; /* numbers of points in the batch: all; those in reach */
 } mcor_probe_run;
 
-/* If options has a box, the call uses only particles near the box. Returns whether it has one. */
+/* If there is a box, the call uses only particles near the box. Returns whether there is a box. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Writes sorted particles [first, first + count) to the batch as points. points.flags tells whether

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Leaves out particles if the virtual grid around all particles would be too long. A call then
- * fails where the grid is measured, and runs once more without some particles. With a box or a
- * probe's points, the second run leaves out all particles that do not reach the box or the points.
+/* Leaves out particles if the lattice around all particles would be too long. A call then fails
+ * where the lattice is measured, and runs once more without some particles. With a box or a probe's
+ * points, the second run leaves out all particles that do not reach the box or the points.
  * Otherwise it leaves out the particles that are farthest away, if they are few. The choice depends
  * on the particles of all ranks together, so ranks agree. */
 

@@ -592,7 +592,7 @@ static void mcor_find_flow(mcor_finder* f)
   }
 }
 
-/* Whether a name stands in a list of names, each on a line of its own. */
+/* Whether a list, which has one name on each line, has this name. */
 static bool mcor_is_listed(const char* list, const char* name)
 {
   const size_t length = strlen(name);

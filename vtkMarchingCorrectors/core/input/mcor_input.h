@@ -111,7 +111,7 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
 /* What a loop, or a slice of it, finds: ranges (an empty one is DBL_MAX, -DBL_MAX), sums of whole
- * numbers, and the least of some indices. */
+ * numbers, and the least index of the elements that are looked for. */
 #define MCOR_RANGES 14
 #define MCOR_SUMS 4
 typedef struct mcor_findings

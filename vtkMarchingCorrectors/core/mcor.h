@@ -663,8 +663,8 @@ extern "C"
 
   /* Finds the period in an array of field data: PeriodicBounds, BoxSize (GADGET, SWIFT), or `box`,
    * if an array boundaryType marks axes as periodic (SPH-EXA). Case, blanks, "_" and "-" of names
-   * do not matter. Returns how many numbers tell the period: 6 bounds, as in mcor_options.periodic; 3
-   * lengths, see mcor_place_period; 0 if no array gives a period. which: becomes the index of the
+   * do not matter. Returns how many numbers tell the period: 6 bounds, as in mcor_options.periodic;
+   * 3 lengths, see mcor_place_period; 0 if no array gives a period. which: becomes the index of the
    * array, or -1; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 

@@ -28,8 +28,8 @@ typedef struct mcor_level
   MCOR_TYPE(float) support;       /* the level's largest support radius in cubes, rounded up */
 } mcor_level;
 
-/* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells that have these as their lowest nodes. Node
- * or cell (x, y, z) of a brick is bit x + 4 y + 16 z of a ulong. */
+/* A brick is 4 x 4 x 4 nodes, and the 4 x 4 x 4 cells whose lowest nodes they are. In a mask (a
+ * ulong), node or cell (x, y, z) of a brick has bit x + 4 y + 16 z. */
 #define MCOR_BRICK 4
 #define MCOR_BRICK_NODES 64
 /* A brick's 7 upper and 7 lower neighbours, see mcor_brick_neighbours. */
@@ -54,9 +54,9 @@ typedef struct mcor_level
  * go on with another work-item while it waits for memory. */
 #define MCOR_BATCH_OF(lanes) ((lanes) == 1 ? 1 : 64)
 
-/* MCOR_INSERTION_OF: successive cells that together have at most this number of particles are
- * sorted in one call of mcor_grid_insert; a larger cell is sorted by a heap. MCOR_USUAL_IN_CELL:
- * the least value of most_in_cell in mcor_grid. */
+/* MCOR_INSERTION_OF: one call of mcor_grid_insert sorts the particles of successive cells, at most
+ * this number of particles. The particles of a cell that has more are sorted by a heap.
+ * MCOR_USUAL_IN_CELL: the least value of most_in_cell in mcor_grid. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
 
@@ -94,9 +94,9 @@ typedef struct mcor_level
 #define MCOR_DECISION_MASKS 5
 
 /* A way to triangulate a cell. An edge is axis << 3 | its lower corner; a corner has the bits 1 x,
- * 2 y, 4 z. tunnel[0]: the row that differs from this one by a tunnel between two regions below the
- * iso value. tunnel[1]: the same for two regions above. Rows are counted from the first row of the
- * case; 0: no such row. */
+ * 2 y, 4 z. tunnel[0]: the number of the row that differs from this row by a tunnel between two
+ * regions below the iso value. tunnel[1]: as tunnel[0], but between two regions above it. Rows are
+ * numbered from the first row of the case; 0: no such row. */
 typedef struct mcor_cell_row
 {
   MCOR_TYPE(uchar) edges[36]; /* 3 per triangle */
@@ -133,10 +133,11 @@ typedef struct mcor_rung
 /* Greatest distance along each axis between the nodes of a group's points, in cubes. */
 #define MCOR_GROUP_EDGE 7
 
-/* Positions of the points of a group, and of particles, are relative to one node. Along each axis,
- * the points are at most this far away: half a group, a point's offset (up to 2.5), and 1.
- * Particles with long supports are rounded more coarsely (mcor_stage.c), so that their positions
- * are exact reals relative to any node up to this distance outside of their supports. */
+/* Positions of a group's points, and of particles, are relative to a node in the middle of the
+ * group. Along each axis, the points are at most this far from the node, in cubes: half a group, a
+ * point's offset (up to 2.5), and a margin of 1. Particles with long supports are rounded more
+ * coarsely (mcor_stage.c), so that their positions relative to any node are exact reals if the node
+ * is no further than this from their supports. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
 /* Groups of points close to each other that one work-item evaluates together. */

@@ -106,8 +106,8 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
 
 /* Writes the sides of the box from `low` to `high` in halves of a cube: centres of cells of all
  * levels are whole numbers of halves. With several levels, large cells stick out of the lattice.
- * Therefore a side of the box that is also a side of the lattice is put at the period's end or,
- * without a period, beyond all cells. If `sides` is NULL, this is done with both sides. */
+ * Therefore a side of the box that is also a side of the lattice is put beyond all cells or, with a
+ * period, at the period's end. If `sides` is NULL, both sides are put there. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {

@@ -3,8 +3,8 @@
 #ifndef mcor_box_h
 #define mcor_box_h
 
-/* The box of a call, for its phases, see mcor_box.c. If the call owns the whole lattice, no cell
- * and no particle is left out. */
+/* What the phases of a call do because of the call's box, see mcor_box.c. If the call owns the
+ * whole lattice, no cell and no particle is left out. */
 
 #include "mcor_internal.h"
 
@@ -83,8 +83,8 @@ static inline int mcor_level_ring(int ring)
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
 }
 
-/* Extraction. Removes from `cells`, masks of the marched bricks, the cells beyond the box and its
- * ring. Beyond the ring, the device lacks particles, or has periodic images of particles. */
+/* Removes cells that are neither in the box nor in the ring around it from the masks `cells` of
+ * marched bricks. Beyond the ring, the device lacks particles, or has images of particles. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* mcor_find_owned finds the owned cells among `cells`; mcor_count_cells counts the owned cells that
  * are also in `within`. */

@@ -15,8 +15,8 @@
 /* Adds the caps to the trimmed mesh. */
 mcor_status mcor_cap(mcor_context* context);
 
-/* Packs a node, or three other numbers below 2^21, into a key. Surfaces have no nodes beyond
- * MCOR_NODE_LIMIT. */
+/* Packs a node, or three other numbers below 2^21, into a key. The coordinates of a surface's nodes
+ * are below MCOR_NODE_LIMIT, which is 2^21. */
 static inline uint64_t mcor_cap_key(const cl_int node[3])
 {
   return (uint64_t)node[0] | (uint64_t)node[1] << 21 | (uint64_t)node[2] << 42 | UINT64_C(1) << 63;
@@ -43,8 +43,8 @@ struct mcor_cap_points
 };
 
 /* Adds a point to the batch, at an offset (NULL: 0) from a node. to: the caller's number of the
- * point, for `take`. Evaluates the batch if it is full. `points` that are all zero, except for
- * `take` and `data`, hold no point yet. */
+ * point, for `take`. Evaluates the batch if it is full. In a new batch, all members are zero, except
+ * for `take` and `data`. */
 mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* points, const cl_int node[3],
   const double offset[3], int64_t to);
 /* Evaluates the points of the last, unfilled batch, and frees the batch. Returns `status` or, if

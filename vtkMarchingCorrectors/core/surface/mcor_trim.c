@@ -61,8 +61,8 @@ static bool mcor_may_lack_fluid(const mcor_context* context)
     (context->grid.has_solids || mcor_trims_by_eigenvalue(context));
 }
 
-/* Returns the threshold of the weight or of the boundary eigenvalue. If the weight is that of the
- * fluid alone, the threshold is at least mcor_least_fluid. */
+/* Returns the threshold of the weight or of the boundary eigenvalue. Without solids, a threshold of
+ * the weight is at least mcor_least_fluid. */
 double mcor_vertex_threshold(const mcor_context* context)
 {
   const double threshold = context->run.options->vertex_threshold;

@@ -62,7 +62,8 @@ typedef struct mcor_point
   bool missed;      /* the correction did not bring the vertex onto the surface */
 } mcor_point;
 
-/* A vertex, or the first vertex of a merged bunch, that is to be corrected on a line from `at`. */
+/* A vertex to correct; the line on which it moves begins at `at`. vertex: its number or, for a
+ * merged bunch, the number of the bunch's first vertex. */
 typedef struct mcor_start
 {
   int64_t at[3];

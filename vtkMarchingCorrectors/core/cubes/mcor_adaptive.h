@@ -56,8 +56,8 @@ mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lin
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
 /* Lists the leaves that may have surface. */
 mcor_status mcor_choose_leaves(mcor_context* context);
-/* Gives slots to the bricks whose nodes the listed leaves need, evaluates the needed nodes, and
- * finds which leaves the surface passes through. */
+/* Gives slots (places for node values) to the bricks whose nodes the listed leaves need, evaluates
+ * these nodes, and finds which leaves the surface passes through. */
 mcor_status mcor_complete_leaves(mcor_context* context);
 void mcor_release_adaptive(mcor_context* context);
 

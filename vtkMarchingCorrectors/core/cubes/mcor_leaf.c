@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: chooses the leaves (mcor_tree.h) that are marched, and gives slots to the bricks
- * whose nodes they need. The seeds (mcor_seed.c) find the states of all leaves. Leaves that may
- * have surface are listed; only their cells are examined. Nodes that are certainly on one side of
- * the iso value have no value at first, and are evaluated if a crossed cell has them. */
+/* Adaptive cubes: chooses the leaves (mcor_tree.h) that are marched, and gives slots (places for
+ * node values) to the bricks whose nodes these leaves need. The seeds (mcor_seed.c) find the states
+ * of all leaves. Leaves that may have surface are listed; only their cells are examined. Nodes that
+ * are certainly on one side of the iso value have no value at first, and are evaluated if a crossed
+ * cell has them. */
 
 #include "mcor_adaptive.h"
 #include "mcor_tree.h"

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1], for uniform and adaptive cubes. Slots and vertices are sorted by level. */
+/* Extraction [III-D.1]: makes vertices and triangles, for uniform and adaptive cubes. Bricks'
+ * slots (places for node values) and vertices are sorted by level. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"

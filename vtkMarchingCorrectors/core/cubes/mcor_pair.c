@@ -39,8 +39,8 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
-/* Gives slots to the bricks that have nodes of reached cells, and evaluates these bricks. *placed:
- * whether bricks got slots, because some are new or because this is the first call. */
+/* Gives slots (places for node values) to the bricks with nodes of reached cells, and evaluates
+ * these bricks. *placed: whether this was done: some bricks are new, or this is the first call. */
 static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;

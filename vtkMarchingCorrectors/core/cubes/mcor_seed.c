@@ -127,8 +127,8 @@ static mcor_status mcor_complete_bricks(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Gives slots to the needed bricks, evaluates their nodes, and finds which cells the surface may
- * cross, and which cells are plain (no finer brick touches them). */
+/* Gives slots (places for node values) to the needed bricks, and evaluates their nodes. Finds which
+ * cells the surface may cross, and which cells are plain (no finer brick touches them). */
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;

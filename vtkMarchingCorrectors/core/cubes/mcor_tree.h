@@ -25,7 +25,8 @@ bool mcor_are_too_many(const mcor_brick_set* levels);
 /* Number of bricks of a cluster along an axis. */
 #define MCOR_CLUSTER 4
 
-/* Return, from a brick's key, the key of its cluster, and the brick's bit in the cluster's mask. */
+/* mcor_cluster_of returns, from a brick's key, the key of the brick's cluster; mcor_cluster_bit
+ * returns the number of the brick's bit in the cluster's mask. */
 static inline uint64_t mcor_cluster_of(uint64_t key)
 {
   return key & ~UINT64_C(0xdb); /* x, y and z have three bits each */

@@ -141,7 +141,7 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   mcor_tree_job* job = data;
   const mcor_context* context = job->context;
   const mcor_lattice* lattice = &context->lattice;
-  /* No reach exceeds the longest measured one, even if other threads change the arrays. */
+  /* Reaches are limited to the longest measured one, as other threads may change the arrays. */
   const double longest = 1.000001 * context->measure.support_max / lattice->cube;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
   uint64_t done[MCOR_BLOCK_BRICKS] = { 0 };

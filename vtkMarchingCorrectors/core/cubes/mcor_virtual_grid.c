@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sparse virtual grid [III-B]: gives slots to the bricks that are needed. */
+/* The sparse virtual grid [III-B]: gives slots (places for node values) to the needed bricks. */
 
 #include "mcor_adaptive.h"
 

@@ -37,7 +37,7 @@ typedef enum mcor_command
 } mcor_command;
 /* Opens the profile that MCOR_PROFILE in the environment names, if it is set. */
 mcor_status mcor_open_profile(mcor_context* context);
-/* Returns where OpenCL is to write the event of a command. */
+/* Starts the clock of a command. Returns where OpenCL is to write the command's event. */
 cl_event* mcor_begin_profiled(struct mcor_profile* profile);
 mcor_status mcor_end_profiled(
   mcor_context* context, mcor_command command, const char* name, size_t bytes);
@@ -65,13 +65,13 @@ double mcor_event_seconds(cl_event event);
 const char* mcor_cl_error_name(cl_int error);
 /* Whether an error means that memory ran out. Drivers that allocate late report it in any call. */
 bool mcor_is_no_memory(cl_int error);
-/* Sets the error sentence about a call that failed. */
+/* Sets the error sentence about OpenCL's function `what`, which failed. Returns the status. */
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
 #define MCOR_POCL_HINT                                                                             \
   "PoCL needs a folder of its own to compile in, writable and with free space: set "               \
   "POCL_CACHE_DIR "                                                                                \
   "to one (else it is ~/.cache/pocl)."
-/* If the device is PoCL, adds to the error sentence which of its files may be the cause. */
+/* If the device is PoCL, adds to the error sentence that PoCL's folder may be the cause. */
 void mcor_blame_files(mcor_context* context);
 
 static inline bool mcor_is_pocl(const char* platform_name)

@@ -16,7 +16,7 @@
  *
  *   enumerator, name, support / h, norm, whether it is a tensor product,
  *   variance in space, variance in the plane: the integral of x^2 W, in h^2
- *   c: W = c h norm / h^3 * w(q) has the integral 1 over the plane; a tensor kernel there has
+ *   c: in the plane, W = c h norm / h^3 * w(q) has the integral 1; a tensor kernel in the plane has
  *     w(|x|/h) w(|y|/h) in place of w(q)
  *   the usual numbers of neighbours in space and in the plane: texts that a warning quotes */
 // clang-format off

@@ -22,8 +22,8 @@
     }                                                                                              \
   } while (0)
 
-/* If the condition holds, keeps the sentence that explains the status, and returns the status. The
- * further arguments are MCOR_SAY(CODE) and the values for the sentence's formats. */
+/* If the condition holds, the calling function keeps the sentence that explains the status, and
+ * returns the status. Further arguments: MCOR_SAY(CODE), and values for the sentence's formats. */
 #define MCOR_FAIL_IF(condition, context, status, ...)                                              \
   do                                                                                               \
   {                                                                                                \
@@ -33,8 +33,8 @@
     }                                                                                              \
   } while (0)
 
-/* Makes a call unless `status` tells that an earlier call failed; for functions that end by freeing
- * something. */
+/* If `status` is MCOR_OK, makes a call, and sets `status` to the call's result. For functions that
+ * must free something before they return. */
 #define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
 
 /* MCOR_LIST: an array that grows. MCOR_APPEND appends a value; if memory runs out, the calling
@@ -95,14 +95,14 @@ typedef struct mcor_kernel_row
 } mcor_kernel_row;
 const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel);
 
-/* complete: all allocations on the host succeeded. If not, fails for lack of host memory. */
+/* Fails for lack of host memory unless `complete`: all allocations on the host succeeded. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);
 /* Makes room for one more element behind the first `count` of an array, which has room for
  * `room` elements of `width` bytes. */
 mcor_status mcor_make_room(
   mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
 
-/* Reads element i of an array of the device's real type. */
+/* Returns element i of an array of the device's real type. */
 static inline double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
 {
   return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
@@ -124,7 +124,7 @@ static inline double mcor_power(double x, int axes)
   return axes == 2 ? x * x : x * x * x;
 }
 
-/* Rounds a number to the device's precision. */
+/* Returns the number rounded to the device's precision. */
 static inline double mcor_real_of(const mcor_context* context, double value)
 {
   return context->cl.real_size == sizeof(float) ? (double)(float)value : value;
@@ -209,8 +209,8 @@ static inline mcor_build mcor_build_of(const mcor_options* options, bool solids)
   return (mcor_build){ options->sph_kernel, options->field, options->precision, solids };
 }
 
-/* Whether seeds are the paper's pairs: neighbours whose values are on both sides of the iso value.
- * A free surface has no such pairs, because no scalar is contoured. */
+/* Whether seeds are the paper's pairs of neighbouring particles, one above the iso value, the other
+ * below it. A free surface has no such pairs, because no scalar is contoured. */
 static inline bool mcor_wants_pairs(const mcor_options* options)
 {
   return options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
@@ -253,7 +253,7 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
     (size_t)((char*)&(s)->member - (char*)(s)) / sizeof(mcor_buffer))
 void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count);
 
-/* mcor_ranks.c. Reduce numbers over all ranks; a single process has all values already. */
+/* mcor_ranks.c. Replace each value by its reduction over all ranks. Without ranks, values stay. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count);
 mcor_status mcor_reduce_counts(
@@ -279,7 +279,8 @@ double mcor_rounding(
   const mcor_context* context); /* the most by which positions on the device are rounded, along each axis */
 
 /* mcor_reuse.c. mcor_check_reuse finds which results of the last call still hold.
- * mcor_same_particles tells by the caller's version number whether the particles are the same. */
+ * mcor_same_particles tells by the caller's version number whether the particles are the same.
+ * mcor_keep_call keeps what the next call compares: the input, the options and the globals. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);

@@ -7,15 +7,15 @@
 
 #include "mcor_internal.h"
 
-/* Turns what a function of options.ranks returns into a status. */
+/* Fails with MCOR_CANCELLED if a callback of options.ranks has returned nonzero. */
 static mcor_status mcor_heard(mcor_context* context, int failed)
 {
   MCOR_FAIL_IF(failed != 0, context, MCOR_CANCELLED, MCOR_SAY(RANK_FAILED));
   return MCOR_OK;
 }
 
-/* Does not communicate if count is 0 (without fluid, there are no samples); count is the same on
- * all ranks. */
+/* Makes no callback if count is 0, e.g. without fluid, when there are no samples. All ranks have the
+ * same count. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {

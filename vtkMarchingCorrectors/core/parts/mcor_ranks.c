@@ -14,8 +14,8 @@ static mcor_status mcor_heard(mcor_context* context, int failed)
   return MCOR_OK;
 }
 
-/* Makes no callback if count is 0, e.g. without fluid, when there are no samples. All ranks have the
- * same count. */
+/* Makes no callback if count is 0, e.g. without fluid, when there are no samples. All ranks have
+ * the same count. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {

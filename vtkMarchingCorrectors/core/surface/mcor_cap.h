@@ -43,8 +43,8 @@ struct mcor_cap_points
 };
 
 /* Adds a point to the batch, at an offset (NULL: 0) from a node. to: the caller's number of the
- * point, for `take`. Evaluates the batch if it is full. In a new batch, all members are zero, except
- * for `take` and `data`. */
+ * point, for `take`. Evaluates the batch if it is full. In a new batch, all members are zero,
+ * except for `take` and `data`. */
 mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* points, const cl_int node[3],
   const double offset[3], int64_t to);
 /* Evaluates the points of the last, unfilled batch, and frees the batch. Returns `status` or, if

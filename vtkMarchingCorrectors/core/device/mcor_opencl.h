@@ -10,6 +10,10 @@
 
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl_icd.h>
+/* On Windows, cl_icd.h includes windows.h, which defines these words. */
+#undef far
+#undef near
+#undef small
 
 /* Lists the platforms, the built-in one first. */
 cl_uint mcor_list_platforms(cl_uint room, cl_platform_id* platforms);

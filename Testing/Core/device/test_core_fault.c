@@ -461,6 +461,27 @@ static void test_extend(void** state)
   assert_int_equal(n, 4); /* the calls are create, map, unmap and copy */
 }
 
+/* On a device with memory of its own, copying to the host's locked memory fails. The memory must be free again. */
+static void test_read_fails(void** state)
+{
+  mcor_context* context = *state;
+  mcor_release_memory(context);
+  const int64_t bytes = context->cl.bytes;
+  mcor_buffer buffer = { 0 };
+  void* view = NULL;
+  context->cl.is_apart = true;
+  CORE_OK(context, mcor_fill(context, &buffer, 1, 1000));
+  CORE_OK(context, mcor_map(context, &buffer, 1000, false, &view)); /* locks memory */
+  CORE_OK(context, mcor_unmap(context, &buffer, &view));
+  core_fail_call(0, CL_INVALID_COMMAND_QUEUE);
+  const mcor_status status = mcor_map(context, &buffer, 1000, false, &view);
+  core_fail_nothing();
+  context->cl.is_apart = false;
+  mcor_release(context, &buffer);
+  CORE_CHECK(status == MCOR_DEVICE_ERROR && !view, mcor_status_name(status), core_failed_call());
+  core_expect_nothing_held(context, bytes, BUFFERS_KEPT);
+}
+
 /* When a program does not build, the message says so and quotes the beginning of the build log, however long the log
  * is. */
 static void test_build_fails(void** state)
@@ -576,4 +597,4 @@ static void test_profile_without_device(void** state)
 
 CORE_MAIN(core_set_up, core_tear_down, test_no_context, test_profile_without_device,
   test_every_call_fails_once, test_probe_and_derive, test_regions, test_filled, test_adaptive_cubes,
-  test_ranks, test_extend, test_build_fails, test_error_names)
+  test_ranks, test_extend, test_read_fails, test_build_fails, test_error_names)

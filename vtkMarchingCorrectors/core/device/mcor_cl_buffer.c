@@ -238,11 +238,12 @@ static mcor_status mcor_map_view(mcor_context* context, const mcor_buffer* buffe
   {
     mcor_locked* locked = NULL;
     MCOR_TRY(mcor_take_locked(context, some, &locked));
-    locked->of = buffer->mem;
     locked->written = write ? bytes : 0;
     locked->sent = write || waits ? 0 : bytes;
+    MCOR_TRY(write ? MCOR_OK : mcor_enqueue_read(context, buffer, 0, locked->host, bytes, waits));
+    locked->of = buffer->mem;
     *data = locked->host;
-    return write ? MCOR_OK : mcor_enqueue_read(context, buffer, 0, *data, bytes, waits);
+    return MCOR_OK;
   }
   cl_int error;
   void* mapped = NULL;

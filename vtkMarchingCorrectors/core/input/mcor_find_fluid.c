@@ -96,10 +96,10 @@ static int mcor_count_kinds(const mcor_finder* f, const mcor_named* array, mcor_
  * to 2 are fixed, moving and floating bodies. Returns false if name and values leave doubt. */
 static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count, double* fluid)
 {
-  const mcor_kind* last = kinds + count - 1;
-  const bool is_solver = count > 1 && kinds->value >= 0 && kinds->value < 3 && last->value == 3 &&
-    mcor_is_usual_name(name, "type");
-  bool is_clear = is_solver || (count > 1 && kinds->value == 0 && last->value == 1);
+  const int last = count - 1;
+  const bool is_solver = count > 1 && kinds[0].value >= 0 && kinds[0].value < 3 &&
+    kinds[last].value == 3 && mcor_is_usual_name(name, "type");
+  bool is_clear = is_solver || (count > 1 && kinds[0].value == 0 && kinds[last].value == 1);
   for (int k = 0; k < count; ++k)
   {
     is_clear = is_clear && kinds[k].value == floor(kinds[k].value);

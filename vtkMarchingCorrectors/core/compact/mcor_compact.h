@@ -46,7 +46,7 @@ typedef struct mcor_bunch_vertex
   atomic_uchar state; /* of a bunch */
   atomic_bool wide; /* the vertex, or its merged bunch, may move: it is a sliver's widest corner */
   bool held;        /* keys of cuts refer to the vertex: it may merge, but does not move alone */
-  bool leans;       /* of a bunch: it is taken apart if a bunch beside it is */
+  bool leans;       /* of a bunch: if a bunch beside it is taken apart, so is this bunch */
 } mcor_bunch_vertex;
 
 /* A vertex of the mesh. Its position is in whole units of 2^-MCOR_POINT_FIX edges of the smallest

@@ -11,7 +11,8 @@
 #include "mcor_internal.h"
 
 /* MCOR_LEAF_LIMIT: the most leaves. MCOR_SPLIT_LIMIT: the most split bricks. A split brick has 8
- * parts. Each is a leaf or is split, too, so each split brick adds at least seven leaves. */
+ * parts (in a plane, 4). A part is a leaf or is split, too. So each split brick adds seven leaves
+ * (in a plane, three). */
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 

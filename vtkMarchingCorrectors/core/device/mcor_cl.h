@@ -121,7 +121,8 @@ typedef struct mcor_cl
   mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* see mcor_release */
   int kept_count;
   mcor_locked locked[MCOR_LOCKED_LIMIT];
-  /* Bytes of kept buffers; the most bytes in other buffers: in this call, in the last call. */
+  /* kept_bytes: bytes of kept buffers. used_peak, used_before: the most bytes in all other buffers,
+   * in this call and in the last call. */
   int64_t kept_bytes, used_peak, used_before;
   double build_seconds;   /* how long the present call has built programs */
   mcor_observer observer; /* progress of the present call; NULL: none */

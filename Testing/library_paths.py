@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fails where a program or library is looked for in the current folder.
+"""Fails if a program or library in FOLDER would look for its libraries in the current folder.
 
     library_paths.py FOLDER...
 
-The loader takes an empty or relative element of RUNPATH or RPATH from the folder in which a program is started, so
-that whoever writes there chooses the libraries that are run.
+An empty or relative path in RUNPATH or RPATH is relative to the folder in which a program is started. Whoever may
+write there could replace the program's libraries.
 """
 import os
 import re

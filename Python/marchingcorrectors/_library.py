@@ -85,7 +85,8 @@ class Sentence(str):
 
 
 def word_by(function):
-    """Makes a mcor_word from function(name, value), which returns "" if it has no word."""
+    """Makes a C callback of type mcor_word from a Python function. function(name, value) returns the words for an option with this
+    value, or "" if it knows none."""
     def write(_, name, value, word, size):
         found = function(name.decode(), value.decode(errors="replace")).encode()[:size - 1]
         ctypes.memmove(word, found + b"\0", len(found) + 1)

@@ -26,7 +26,7 @@ public:
     std::vector<std::string> Walls; ///< files of the walls at this step
   };
 
-  /// One of the times, while work is done on it.
+  /// What ForEach() passes to the work for one time: the particles, and texts for messages.
   struct Moment
   {
     std::size_t Number;

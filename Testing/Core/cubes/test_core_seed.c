@@ -178,7 +178,7 @@ static void test_pairs(void** state)
 }
 
 /* The two particles of a pair are as far apart as a pair may be, to within rounding, and pairs are far from each other.
- * The two forms of the kernels look at different groups of particles, and must find the same number of cells. */
+ * The OpenCL code for CPUs and the code for GPUs group particles differently, and must find the same number of cells. */
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;

@@ -10,9 +10,8 @@
 
 typedef struct fill_report
 {
-  double area,
-    /* area: all triangles'. enclosed: within lines of the lowest iso value; 0 unless all these are closed. */
-    enclosed;
+  double area;     /* of all triangles */
+  double enclosed; /* area within the lines of the lowest iso value; 0 if one of these lines is open */
   double inverted; /* area of triangles that run round in the wrong direction */
   int64_t loose;   /* edges on the border that are not lines */
   double loose_length;

@@ -27,7 +27,8 @@ typedef struct mcor_probe_run
   int count, inside; /* numbers of points in the batch: all; those in reach */
 } mcor_probe_run;
 
-/* If there is a box, the call uses only particles near the box. Returns whether there is a box. */
+/* If the options have a box, restricts the present call to particles near the box. Returns whether
+ * there is a box. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Writes sorted particles [first, first + count) to the batch as points. points.flags tells whether

@@ -176,10 +176,10 @@ static mcor_status mcor_fit_period(
 /* The least length of the longest edge is 1 - 1 / MCOR_STEP_RANGE cubes. */
 #define MCOR_STEP_RANGE 16
 
-/* Chooses the edges in fixed-point units. Positions are numbers of units, so distances are right if
- * the edges have the same ratios as their numbers of units. For the longest edge, tries a cube's
- * number of units, and smaller numbers down to 1 - 1 / MCOR_STEP_RANGE of this number, but at most
- * MCOR_STEP_TRIES of them. Takes the one with the best ratios, which are right to about 1e-8. */
+/* Chooses how many fixed-point units long each edge is. A unit must have the same length along all
+ * axes, so these whole numbers must have the ratios of the edges. For the longest edge, tries at
+ * most MCOR_STEP_TRIES numbers: from the units of a cube down to 1 - 1 / MCOR_STEP_RANGE of them.
+ * Takes the number for which rounding changes the ratios least, by about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;

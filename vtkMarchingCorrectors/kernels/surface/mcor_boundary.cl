@@ -108,7 +108,7 @@ realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
   {
     e[c] *= scale;
   }
-  /* The Rayleigh quotient removes the error of e to second order. */
+  /* The Rayleigh quotient's error is only quadratic in the error of e. */
   return m->xx * e[0] * e[0] + m->yy * e[1] * e[1] + m->zz * e[2] * e[2] +
     (real)2 * (m->xy * e[0] * e[1] + m->yz * e[1] * e[2] + m->zx * e[2] * e[0]);
 }

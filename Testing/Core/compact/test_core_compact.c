@@ -341,5 +341,4 @@ static void many_slices(void** state)
   assert_true(core_hash(&one) == core_hash(&with));
 }
 
-CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps,
-  many_slices)
+CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps, many_slices)

@@ -21,7 +21,7 @@ void* mcor_system_allocate(size_t alignment, size_t bytes);
 void mcor_system_release(void* memory);
 /* Asks for large pages, where the system has them. Called before the first touch of a large array
  * of the host, or of a device that shares the host's memory. With pages of 4 kB, first touches take
- * a third of the time of a run with ten million particles. */
+ * a third of the time of a run with ten million particles. memory: may be NULL. */
 #define MCOR_LARGE_ARRAY ((size_t)1 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 

@@ -47,7 +47,7 @@ void mcor_use_large_pages(void* memory, size_t bytes)
 #ifdef MADV_HUGEPAGE
   const size_t page = (size_t)sysconf(_SC_PAGESIZE);
   const size_t skipped = (page - (uintptr_t)memory % page) % page;
-  if (bytes >= MCOR_LARGE_ARRAY)
+  if (memory && bytes >= MCOR_LARGE_ARRAY)
   {
     /* This is only a request; if it is refused, pages stay small. */
     (void)madvise((char*)memory + skipped, (bytes - skipped) / page * page, MADV_HUGEPAGE);

@@ -86,10 +86,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   }
   set.has_solids = at->solids;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
-  mcor_input input = core_input(&set);
+  mcor_input input = core_input_with(&set, attributes, 2);
   input.volume = at->volumes ? input.volume : (mcor_array){ 0 };
-  input.attributes = attributes;
-  input.attribute_count = 2;
   mcor_options options = core_options(&iso);
   options.sph_kernel = at->kernel;
   options.field = at->field;

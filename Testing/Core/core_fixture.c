@@ -174,6 +174,14 @@ particle_set core_make_random(int64_t count, double size, double h_min, double h
   return set;
 }
 
+mcor_input core_input_with(const particle_set* set, const mcor_array* attributes, int count)
+{
+  mcor_input input = core_input(set);
+  input.attributes = attributes;
+  input.attribute_count = count;
+  return input;
+}
+
 mcor_input core_input_to_keep(const particle_set* set)
 {
   static uint64_t version = 0;

@@ -114,6 +114,8 @@ particle_set core_make_random(
 double core_ball(const double x[3]);  /* 9 - |x|^2: iso 0 is a sphere of radius 3 */
 double core_slope(const double x[3]); /* linear */
 
+/* Does what core_input does, and adds these attributes, [count]; the input keeps the pointer. */
+mcor_input core_input_with(const particle_set* set, const mcor_array* attributes, int count);
 /* Like core_input, but the particles stay on the device after the extraction. */
 mcor_input core_input_to_keep(const particle_set* set);
 mcor_options core_options(const double* iso); /* NULL: no iso value */

@@ -336,9 +336,7 @@ static int tank_run(mcor_context* context, const tank_case* at)
     set.scalar[i] = 9 * random_unit(&seed);
   }
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
-  mcor_input input = core_input(&set);
-  input.attributes = attributes;
-  input.attribute_count = 2;
+  mcor_input input = core_input_with(&set, attributes, 2);
   input.mass = has & TANK_MASS ? input.volume : input.mass;
   input.volume = has & (TANK_COMPUTED | TANK_MASS) ? (mcor_array){ 0 } : input.volume;
   input.estimate_smoothing_length = (has & TANK_ESTIMATED) != 0;
@@ -483,9 +481,7 @@ int main(int argc, char** argv)
   CORE_SET set = modules_set();
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
-  mcor_input input = core_input(&set);
-  input.attributes = attributes;
-  input.attribute_count = 2;
+  const mcor_input input = core_input_with(&set, attributes, 2);
   int good = 1;
   for (size_t i = 0; i < sizeof runs / sizeof runs[0]; ++i)
   {

@@ -53,9 +53,8 @@ static void test_cancel_between_launches(void** state)
   mcor_context* context = *state;
   CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
-  mcor_input input = core_input(&set);
-  input.attributes = &input.scalar;
-  input.attribute_count = 1;
+  const mcor_array attribute = core_array(set.scalar, 1);
+  const mcor_input input = core_input_with(&set, &attribute, 1);
   mcor_options options = core_options(&iso);
   options.progress = on_progress;
   for (int kind = 0; kind < 3; ++kind)

@@ -215,11 +215,9 @@ static void check_triangles(
 static mcor_input input_of(
   const compact_case* at, const particle_set* set, const mcor_array* attribute)
 {
-  mcor_input input = core_input(set);
+  mcor_input input = core_input_with(set, attribute, 1);
   input.volume =
     at->make == make_smooth || at->make == make_rough ? (mcor_array){ 0 } : input.volume;
-  input.attributes = attribute;
-  input.attribute_count = 1;
   return input;
 }
 

@@ -7,35 +7,35 @@
 #include "core_fixture.h"
 #include "mcor_tree.h"
 
-static void measure(mcor_context* context, const particle_set* set, int limit,
-  mcor_options* options, mcor_input* input)
+/* `measure` sets these anew for each test. The context keeps a pointer to the options. */
+static mcor_input input;
+static mcor_options options;
+
+static void measure(mcor_context* context, const particle_set* set, int limit)
 {
   static const double iso = 0.5;
-  *input = core_input(set);
-  *options = core_options(&iso);
-  options->field = MCOR_WEIGHT_SUM;
-  options->level_limit = limit;
-  context->run.options = options;
+  input = core_input(set);
+  options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.level_limit = limit;
+  context->run.options = &options;
   context->kept.uses_solids = false;
   context->space.axes = 3;
-  CORE_OK(context, mcor_measure_input(context, input, options));
+  CORE_OK(context, mcor_measure_input(context, &input, &options));
 }
 
 static void level_limit(void** state)
 {
   mcor_context* context = *state;
-  mcor_options options;
-  mcor_input input;
   CORE_SET set = core_make_random(20000, 200, 0.5, 20, 7);
   for (int limit = 2; limit <= 24; limit += 22)
   {
-    measure(context, &set, limit, &options, &input);
+    measure(context, &set, limit);
     CORE_OK(context, mcor_make_tree(context, &input));
     const int top = context->tree.top;
     assert_in_range(top, limit == 2 ? 2 : 4, limit == 2 ? 2 : 5);
     assert_int_equal(context->tree.first_block[top + 1], context->tree.block_count);
   }
-  context->run.options = NULL;
 }
 
 /* Level L of cubes begins at a smoothing length of exactly 2^L times the smallest h. */
@@ -56,16 +56,12 @@ static void levels_of_particles(void** state)
 static void more_bricks_than_numbers(void** state)
 {
   mcor_context* context = *state;
-  mcor_options options;
-  mcor_input input;
   CORE_SET set = core_make_block(4, 0, 1, core_slope);
-  measure(context, &set, 24, &options, &input);
+  measure(context, &set, 24);
   /* Smoothing lengths from 1 to 10^7 give this many levels, with a cube size that the lattice
    * allows. */
   context->lattice.levels = 24;
-  assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(core_told(context, "LEVELS_TOO_MANY|24 "), mcor_last_error(context));
-  context->run.options = NULL;
+  CORE_FAILS(context, MCOR_OUT_OF_CAPACITY, mcor_make_tree(context, &input), "LEVELS_TOO_MANY|24 ");
 }
 
 /* Particles reach far beyond their volume. The run must notice that there are too many leaves before the sets of bricks
@@ -73,15 +69,12 @@ static void more_bricks_than_numbers(void** state)
 static void more_leaves_than_the_limit(void** state)
 {
   mcor_context* context = *state;
-  mcor_options options;
-  mcor_input input;
   CORE_SET set = core_make_random(3, 40, 1, 1, 3);
   set.smoothing_length[0] = 8;
-  measure(context, &set, 24, &options, &input);
+  measure(context, &set, 24);
   options.h_scale = 220;
   CORE_OK(context, mcor_measure_input(context, &input, &options));
-  assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(core_told(context, "LEAVES_TOO_MANY"), mcor_last_error(context));
+  CORE_FAILS(context, MCOR_OUT_OF_CAPACITY, mcor_make_tree(context, &input), "LEAVES_TOO_MANY");
   size_t room = 0;
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
@@ -89,7 +82,6 @@ static void more_leaves_than_the_limit(void** state)
   }
   CORE_CHECK(room < 50000000, room);
   mcor_release_tree(&context->tree);
-  context->run.options = NULL;
 }
 
 /* Each level alone has fewer leaves than the limit, all levels together have more. Where leaves are sparse, most bricks
@@ -97,19 +89,15 @@ static void more_leaves_than_the_limit(void** state)
 static void more_leaves_of_all_levels(void** state)
 {
   mcor_context* context = *state;
-  mcor_options options;
-  mcor_input input;
   CORE_SET set = core_make_random(90000, 1, 3e-6, 0.03, 3);
-  measure(context, &set, 24, &options, &input);
-  assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(core_told(context, "LEAVES_TOO_MANY"), mcor_last_error(context));
+  measure(context, &set, 24);
+  CORE_FAILS(context, MCOR_OUT_OF_CAPACITY, mcor_make_tree(context, &input), "LEAVES_TOO_MANY");
   for (int l = 0; l < MCOR_TREE_LEVEL_LIMIT + 2; ++l)
   {
     assert_in_range(context->tree.split[l].count, 0, 4000000);
   }
   assert_null(context->tree.leaves);
   mcor_release_tree(&context->tree);
-  context->run.options = NULL;
 }
 
 static int stop_at(void* user, double fraction, const char* phase)
@@ -130,11 +118,9 @@ static void making_leaves_can_be_cancelled(void** state)
   };
   mcor_context* context = *state;
   const double interval = context->report_interval;
-  mcor_options options;
-  mcor_input input;
   CORE_SET set = core_make_random(6000, 20, 0.2, 4, 5);
   int left = often;
-  measure(context, &set, 24, &options, &input);
+  measure(context, &set, 24);
   options.h_scale = 20;
   CORE_OK(context, mcor_measure_input(context, &input, &options));
   options.progress = stop_at;
@@ -154,7 +140,6 @@ static void making_leaves_can_be_cancelled(void** state)
   CORE_OK(context, mcor_make_tree(context, &input));
   assert_int_equal(often - left, calls);
   context->report_interval = interval;
-  context->run.options = NULL;
 }
 
 CORE_MAIN(core_set_up, core_tear_down, more_bricks_than_numbers, making_leaves_can_be_cancelled,

@@ -291,12 +291,10 @@ static void test_every_call_fails_once(void** state)
   const mcor_array attribute = core_array(set.smoothing_length, 1);
   set.smoothing_length[7] *= 1.5;
   sweep s = { .call = extract,
-    .input = core_input(&set),
+    .input = core_input_with(&set, &attribute, 1),
     .options = core_options(&iso),
     .arguments = true,
     .step = 1 };
-  s.input.attributes = &attribute;
-  s.input.attribute_count = 1;
   s.options.topology = MCOR_TOPOLOGY_FIELD;
   s.options.seeds = MCOR_PAIRS;
   s.options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_NEAREST_PARTICLE;
@@ -320,14 +318,12 @@ static void test_probe_and_derive(void** state)
   double* points = core_copy(at, sizeof at);
   const mcor_array attribute = core_array(set.scalar, 1);
   sweep s = { .call = probe,
-    .input = core_input(&set),
+    .input = core_input_with(&set, &attribute, 1),
     .options = core_options(NULL),
     .points = core_array(points, 3),
     .point_count = 4 };
   s.options.iso_count = 0;
   s.options.outputs |= MCOR_OUT_GRADIENTS;
-  s.input.attributes = &attribute;
-  s.input.attribute_count = 1;
   sweep_room(*state, &s, 3, 40);
   s.call = derive;
   sweep_room(*state, &s, 3, 40);

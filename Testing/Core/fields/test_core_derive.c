@@ -9,11 +9,9 @@
 static mcor_derivatives derive(mcor_context* context, const particle_set* set, const double* values,
   int components, mcor_type precision, mcor_gradient form)
 {
-  mcor_input input = core_input(set);
   const mcor_array attribute = core_array(values, components);
+  mcor_input input = core_input_with(set, &attribute, 1);
   input.scalar = (mcor_array){ 0 };
-  input.attributes = &attribute;
-  input.attribute_count = 1;
   mcor_options options = core_options(NULL);
   options.precision = precision;
   options.dimension = 3; /* three particles would otherwise be two-dimensional */

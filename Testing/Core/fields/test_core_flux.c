@@ -99,10 +99,7 @@ static void free_fluid(fluid* made)
 
 static mcor_input fluid_input(const fluid* made)
 {
-  mcor_input input = core_input(&made->set);
-  input.attributes = made->attributes;
-  input.attribute_count = 2;
-  return input;
+  return core_input_with(&made->set, made->attributes, 2);
 }
 
 typedef struct shape

@@ -28,11 +28,9 @@ static mcor_options probe_options(void)
 static mcor_samples probe(mcor_context* context, const particle_set* set,
   const mcor_options* options, const double* points, int64_t count)
 {
-  mcor_input input = core_input(set);
-  const mcor_array attribute = input.scalar, at = core_array(points, 3);
+  const mcor_array attribute = core_array(set->scalar, 1), at = core_array(points, 3);
+  mcor_input input = core_input_with(set, &attribute, 1);
   input.scalar = (mcor_array){ 0 };
-  input.attributes = &attribute;
-  input.attribute_count = 1;
   mcor_samples samples;
   CORE_OK(context, mcor_probe(context, &input, options, &at, count, &samples));
   return samples;
@@ -178,10 +176,8 @@ static void probe_in_another_order(mcor_context* context, double size, double h_
   {
     wide[i] = random_unit(&seed);
   }
-  mcor_input input = core_input(&set);
-  const mcor_array attributes[2] = { input.scalar, core_array(wide, 11) };
-  input.attributes = attributes;
-  input.attribute_count = 2;
+  const mcor_array attributes[2] = { core_array(set.scalar, 1), core_array(wide, 11) };
+  const mcor_input input = core_input_with(&set, attributes, 2);
   const mcor_options options = probe_options();
   const int64_t count = 700;
   CORE_FREED double* points = probe_points(count, size, 21);
@@ -274,10 +270,8 @@ static void test_odd_points(void** state)
 {
   mcor_context* context = *state;
   CORE_SET set = core_make_block(6, 0, 1, core_slope);
-  mcor_input input = core_input(&set);
-  const mcor_array attribute = input.scalar;
-  input.attributes = &attribute;
-  input.attribute_count = 1;
+  const mcor_array attribute = core_array(set.scalar, 1);
+  const mcor_input input = core_input_with(&set, &attribute, 1);
   mcor_options options = core_options(NULL);
   const double points[] = { 0, 0, 0, NAN, 0, 0, 1e300, 0, 0, INFINITY, 0, 0, -40, 0, 0 };
   CORE_FREED double* copy = core_copy(points, sizeof points);

@@ -24,9 +24,7 @@ static void smooth_surfaces(void** state)
     set.solid[i] = set.position[3 * i] < -0.6 * set.smoothing_length[i] && i % 3 == 0;
   }
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
-  mcor_input input = core_input(&set);
-  input.attributes = attributes;
-  input.attribute_count = 2;
+  mcor_input input = core_input_with(&set, attributes, 2);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
   core_check_cuts(*state, "free surface", &input, &options);
   set.has_solids = 1;
@@ -44,11 +42,6 @@ static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;
   CORE_SET set = core_make_random(4000, 14, 0.3, 3, 7);
-  uint64_t seed = 12;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.scalar[i] = 2 * random_unit(&seed) - 1;
-  }
   mcor_input input = core_input(&set);
   input.volume = (mcor_array){ 0 };
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);

@@ -27,11 +27,9 @@ static void trimmed_surfaces(void** state)
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3),
     core_array(set.smoothing_length, 1) };
-  mcor_input input = core_input(&set);
+  mcor_input input = core_input_with(&set, attributes, 2);
   mcor_options options = core_options(iso);
   options.iso_count = 2;
-  input.attributes = attributes;
-  input.attribute_count = 2;
   core_ask_for_all(&options);
   core_check_cuts(*state, "two values, solids", &input, &options);
   options.wall_share = 0.4;
@@ -119,14 +117,12 @@ static void nearest_particles(void** state)
  * The particles near some boxes have x of one sign, although the global range of x has both. */
 static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
 {
-  mcor_input input = core_input(set);
+  mcor_input input = core_input_with(set, attributes, 3);
   input.volume = (mcor_array){ 0 };
   input.mass = core_array(set->volume, 1);
   attributes[0] = core_array(set->position, 3);
   attributes[1] = (mcor_array){ .constant = 7, .type = MCOR_FLOAT64, .components = 1 };
   attributes[2] = core_array(set->scalar, 1);
-  input.attributes = attributes;
-  input.attribute_count = 3;
   return input;
 }
 
@@ -253,10 +249,8 @@ static void impossible_globals(void** state)
 {
   const double iso = 0;
   CORE_SET set = core_make_block(5, 0.2, 3, core_ball);
-  mcor_input input = core_input(&set);
-  const mcor_array attribute = input.scalar;
-  input.attributes = &attribute;
-  input.attribute_count = 1;
+  const mcor_array attribute = core_array(set.scalar, 1);
+  const mcor_input input = core_input_with(&set, &attribute, 1);
   mcor_options options = core_options(&iso);
   mcor_globals measured;
   CORE_SURFACE surface;
@@ -321,9 +315,7 @@ static void check_caps(mcor_context* context, const double around[6])
     set.position[i] *= around[2 * (i % 3) + 1] / 4;
   }
   const mcor_array position = core_array(set.position, 3);
-  mcor_input input = core_input(&set);
-  input.attributes = &position;
-  input.attribute_count = 1;
+  mcor_input input = core_input_with(&set, &position, 1);
   mcor_options options = core_options(iso);
   options.iso_count = 2;
   options.cube_size = 0.4;

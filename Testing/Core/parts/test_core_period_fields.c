@@ -8,11 +8,9 @@
 /* Returns an input with the set's scalar as its only attribute. */
 static mcor_input attribute_input(const particle_set* set, mcor_array* attribute)
 {
-  mcor_input input = core_input(set);
+  mcor_input input = core_input_with(set, attribute, 1);
   *attribute = input.scalar;
   input.scalar = (mcor_array){ 0 };
-  input.attributes = attribute;
-  input.attribute_count = 1;
   return input;
 }
 

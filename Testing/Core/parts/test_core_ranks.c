@@ -81,7 +81,7 @@ typedef struct measure_job
 static mcor_input measure_input(
   const particle_set* set, const measure_case* what, mcor_array attributes[3])
 {
-  mcor_input input = core_input(set);
+  mcor_input input = core_input_with(set, attributes, 3);
   input.estimate_smoothing_length = what->estimate;
   if (what->mass)
   {
@@ -91,8 +91,6 @@ static mcor_input measure_input(
   attributes[0] = core_array(set->position, 3);
   attributes[1] = core_array(set->scalar, 1);
   attributes[2] = (mcor_array){ .constant = 3, .type = MCOR_FLOAT64, .components = 1 };
-  input.attributes = attributes;
-  input.attribute_count = 3;
   return input;
 }
 

@@ -464,9 +464,7 @@ static void test_attributes(void** state)
   {
     attributes[a] = core_array(values + set.count * 3 * a, 3);
   }
-  mcor_input input = core_input(&set);
-  input.attributes = attributes;
-  input.attribute_count = ARRAYS;
+  const mcor_input input = core_input_with(&set, attributes, ARRAYS);
   mcor_options options = fill_options(isos, 2);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_GRADIENTS;
   CORE_SURFACE surface = core_extract(context, &input, &options);

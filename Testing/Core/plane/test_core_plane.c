@@ -231,10 +231,8 @@ static void test_derivatives_and_gauges(void** state)
       velocity[3 * i + (axis + 2) % 3] = 0.5 * u + v;
     }
     const mcor_array attribute = core_array(velocity, 3);
-    mcor_input input = core_input(&set);
+    mcor_input input = core_input_with(&set, &attribute, 1);
     input.scalar = (mcor_array){ 0 };
-    input.attributes = &attribute;
-    input.attribute_count = 1;
     mcor_options options = core_options(NULL);
     CORE_DERIVATIVES derivatives;
     CORE_OK(context, mcor_derive(context, &input, &options, MCOR_GRADIENT_CORRECTED, &derivatives));

@@ -125,11 +125,9 @@ static int ends_at(const mcor_surface* s, int32_t p)
 static void check_caps(
   mcor_context* context, const particle_set* set, mcor_options options, int is_closed)
 {
-  mcor_input input = core_input(set);
-  const mcor_array attribute = input.scalar;
+  const mcor_array attribute = core_array(set->scalar, 1);
+  const mcor_input input = core_input_with(set, &attribute, 1);
   double planes[6];
-  input.attributes = &attribute;
-  input.attribute_count = 1;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_WEIGHT_SUM;
   const int capping = options.capping;
   options.capping = MCOR_CAP_NONE;

@@ -179,10 +179,8 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
     set.smoothing_length[j] *= set.position[3 * j] > 0 ? spread : 1;
   }
   const double iso = 0.3;
-  mcor_input input = core_input(&set);
   const mcor_array other = core_array(set.position, 3);
-  input.attributes = &other;
-  input.attribute_count = 1;
+  const mcor_input input = core_input_with(&set, &other, 1);
   mcor_options options = core_options(&iso);
   options.sph_kernel = MCOR_M_PRIME_4;
   options.level_limit = level_limit;

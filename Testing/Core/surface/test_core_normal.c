@@ -93,10 +93,8 @@ static void check_attributes(mcor_context* context, int solids)
   const mcor_array attributes[4] = { core_array(constant, 0), core_array(many, 9),
     { .data = single, .type = MCOR_FLOAT32 }, core_array(set.position, 3) };
   const double iso = 1.5;
-  mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  input.attributes = attributes;
-  input.attribute_count = 4;
+  const mcor_input input = core_input_with(&set, attributes, 4);
+  const mcor_options options = core_options(&iso);
   CORE_SURFACE surface = core_extract(context, &input, &options);
   particle_set fluid = set;
   CORE_FREED uint8_t* none = oracle_allocate(n, 1);

@@ -317,7 +317,7 @@ class RealFiles(CommandLineTest):
             self.one_sentence(result, 1, r"film.dump#3: .*film.dump cannot be read: (it ends before|line \d+ is no item)")
             self.assertEqual([float(row["time"]) for row in read_table(self.directory / "levels.csv")], [400, 600, 900])
         result = self.run_program(film, "film.pvd", *FREE, *H, "--periodic", "0,0,0")
-        self.one_sentence(result, 1, r"film_0003.vtp \(time 1200\): .*film.dump cannot be read: line \d+ is none")
+        self.one_sentence(result, 1, r"film_0003.vtp \(time 1200\): .*film.dump cannot be read: line \d+ is no item")
         self.assertTrue((self.directory / "film_0002.vtp").exists())
 
 

@@ -37,7 +37,7 @@ def make_tank(count):
 
 def show_profile(path, call):
     """Prints the table of one call of a profile, and its slowest kernels. The host's time of a phase leaves out OpenCL's calls, because
-    reads and writes wait in them. Times of kernels and transfers are the device's."""
+    most reads wait in them. Times of kernels and transfers are the device's."""
     totals = collections.defaultdict(lambda: collections.Counter(dict.fromkeys(("phase", "build"), 0)))
     kernels = collections.Counter()
     with open(path, newline="") as file:
@@ -51,7 +51,7 @@ def show_profile(path, call):
             if command == "launch":
                 kernels[row["kernel"]] += device
     totals["all"] = sum(totals.values(), collections.Counter())
-    print("\n| phase | ms | host, ms | launches | kernels, ms | waits | waits, ms | up, MB | up, ms | down, MB | down, ms |"
+    print("\n| phase | ms | host, ms | launches | kernels, ms | waits, copies | their ms | up, MB | up, ms | down, MB | down, ms |"
           "\n|---|---|---|---|---|---|---|---|---|---|---|")
     for name, of in totals.items():
         waits, waited = [sum(of[command + key] for command in ("wait", "write", "read")) for key in (" count", "")]

@@ -200,10 +200,6 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
   if (best->sent > 0) /* the driver may still copy what the memory held before */
   {
     MCOR_TRY(mcor_finish(context));
-    for (mcor_locked* l = cl->locked; l < cl->locked + MCOR_LOCKED_LIMIT; ++l)
-    {
-      l->sent = l->of ? l->sent : 0;
-    }
   }
   if (best->size < bytes)
   {

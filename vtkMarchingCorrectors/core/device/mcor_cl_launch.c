@@ -197,5 +197,10 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
 mcor_status mcor_finish(mcor_context* context)
 {
   MCOR_CL_COMMAND(context, MCOR_COMMAND_WAIT, "", 0, clFinish(context->cl.queue), "clFinish");
+  /* Now no copy of locked memory is under way. The host may still write to what it has mapped. */
+  for (mcor_locked* l = context->cl.locked; l < context->cl.locked + MCOR_LOCKED_LIMIT; ++l)
+  {
+    l->sent = l->of && l->written > 0 ? l->sent : 0;
+  }
   return MCOR_OK;
 }

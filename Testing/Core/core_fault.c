@@ -4,7 +4,9 @@
 #include "core_fault.h"
 
 #include <stdatomic.h>
+#include <sys/mman.h>
 #include <threads.h>
+#include <unistd.h>
 
 /* fail_at: which call fails, counted from 0; -1: none. call_count: how many calls came so far. */
 static int fail_at = -1, call_count;
@@ -34,14 +36,32 @@ static int fails(const char* name, int kind)
   return 1;
 }
 
-const cl_icd_dispatch* __real_mcor_driver(const void* object);
+/* A driver's functions before core_fault.c put its own into the driver's table. */
+typedef struct real_driver
+{
+  cl_icd_dispatch* table;
+  cl_icd_dispatch functions;
+} real_driver;
+
+static real_driver drivers[16];
+
+/* Returns the own functions of the driver that made an object. */
+static const cl_icd_dispatch* real(const void* object)
+{
+  const real_driver* driver = drivers;
+  while (driver->table != mcor_driver(object))
+  {
+    ++driver;
+  }
+  return &driver->functions;
+}
 
 /* Defines try_NAME, which fails or calls the driver's NAME. object: the parameter that tells the driver. */
 #define FAULT_CALL(name, object, parameters, arguments)                                            \
   static cl_int try_##name parameters                                                              \
   {                                                                                                \
     const int kind = strcmp(#name, "clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
-    return fails(#name, kind) ? fail_with : (__real_mcor_driver(object)->name)arguments;           \
+    return fails(#name, kind) ? fail_with : (real(object)->name)arguments;                         \
   }
 
 /* If CORE_SHADOWS is set, writes once more to the whole buffer that the host has written to (see
@@ -51,9 +71,8 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
 #define FAULT_WRITE(name, mem, parameters, arguments)                                              \
   static cl_int try_##name parameters                                                              \
   {                                                                                                \
-    return fails(#name, COMMAND)                                                                   \
-      ? fail_with                                                                                  \
-      : write_again(queue, mem, (__real_mcor_driver(queue)->name)arguments);                       \
+    return fails(#name, COMMAND) ? fail_with                                                       \
+                                 : write_again(queue, mem, (real(queue)->name)arguments);          \
   }
 
 FAULT_CALL(clBuildProgram, program,
@@ -89,8 +108,8 @@ FAULT_CALL(clFinish, queue, (cl_command_queue queue), (queue))
 static cl_int try_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
   cl_uint waits, const cl_event* wait, cl_event* event)
 {
-  const cl_int error = write_again(queue, mem,
-    (__real_mcor_driver(queue)->clEnqueueUnmapMemObject)(queue, mem, mapped, waits, wait, event));
+  const cl_int error = write_again(
+    queue, mem, (real(queue)->clEnqueueUnmapMemObject)(queue, mem, mapped, waits, wait, event));
   return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
 }
 
@@ -106,9 +125,9 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error)
   if (error == CL_SUCCESS && data)
   {
     error = clEnqueueReadBuffer(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL);
-    error = error == CL_SUCCESS ? (__real_mcor_driver(queue)->clEnqueueWriteBuffer)(
-                                    queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
-                                : error;
+    error = error == CL_SUCCESS
+      ? (real(queue)->clEnqueueWriteBuffer)(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
+      : error;
   }
   free(data);
   return error;
@@ -126,8 +145,7 @@ static cl_int try_clGetProgramBuildInfo(cl_program program, cl_device_id device,
 {
   if (!build_log)
   {
-    return (__real_mcor_driver(program)->clGetProgramBuildInfo)(
-      program, device, info, size, value, needed);
+    return (real(program)->clGetProgramBuildInfo)(program, device, info, size, value, needed);
   }
   assert_int_equal(info, CL_PROGRAM_BUILD_LOG);
   if (needed)
@@ -148,7 +166,7 @@ static cl_int try_clGetProgramBuildInfo(cl_program program, cl_device_id device,
 static cl_int try_clReleaseMemObject(cl_mem mem)
 {
   atomic_fetch_sub(&live_buffers, 1);
-  return getenv("CORE_SHADOWS") ? CL_SUCCESS : (__real_mcor_driver(mem)->clReleaseMemObject)(mem);
+  return getenv("CORE_SHADOWS") ? CL_SUCCESS : (real(mem)->clReleaseMemObject)(mem);
 }
 
 /* Decides whether a call that returns a new object fails. Sets *error if it fails. */
@@ -172,8 +190,7 @@ static cl_context try_clCreateContext(const cl_context_properties* properties, c
   device_now = devices[0];
   return fails_to_make("clCreateContext", error)
     ? NULL
-    : (__real_mcor_driver(devices[0])->clCreateContext)(
-        properties, count, devices, notify, user, error);
+    : (real(devices[0])->clCreateContext)(properties, count, devices, notify, user, error);
 }
 
 static cl_int fill(cl_context context, cl_mem mem, size_t size, unsigned char byte)
@@ -194,7 +211,7 @@ static cl_mem try_clCreateBuffer(
 {
   cl_mem mem = fails_to_make("clCreateBuffer", error)
     ? NULL
-    : (__real_mcor_driver(context)->clCreateBuffer)(context, flags, size, host, error);
+    : (real(context)->clCreateBuffer)(context, flags, size, host, error);
   const char* byte = getenv("CORE_FILL");
   if (mem && byte)
   {
@@ -210,7 +227,7 @@ static void* try_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool 
 {
   return fails_to_make("clEnqueueMapBuffer", error)
     ? NULL
-    : (__real_mcor_driver(queue)->clEnqueueMapBuffer)(
+    : (real(queue)->clEnqueueMapBuffer)(
         queue, mem, blocking, flags, offset, size, waits, wait, event, error);
 }
 
@@ -218,32 +235,54 @@ static cl_kernel try_clCreateKernel(cl_program program, const char* name, cl_int
 {
   return fails_to_make("clCreateKernel", error)
     ? NULL
-    : (__real_mcor_driver(program)->clCreateKernel)(program, name, error);
+    : (real(program)->clCreateKernel)(program, name, error);
 }
 
-/* Returns the driver's functions, with the try_ functions above in place of the driver's own. */
-const cl_icd_dispatch* __wrap_mcor_driver(const void* object);
-const cl_icd_dispatch* __wrap_mcor_driver(const void* object)
+/* Puts the try_ functions above in place of a driver's own, also where its table is constant. */
+static void replace_functions(cl_icd_dispatch* table)
 {
-  static _Thread_local cl_icd_dispatch driver;
-  memcpy(&driver, __real_mcor_driver(object),
-    offsetof(cl_icd_dispatch, clCreateCommandQueueWithProperties));
-  driver.clBuildProgram = try_clBuildProgram;
-  driver.clCreateBuffer = try_clCreateBuffer;
-  driver.clCreateContext = try_clCreateContext;
-  driver.clCreateKernel = try_clCreateKernel;
-  driver.clSetKernelArg = try_clSetKernelArg;
-  driver.clEnqueueNDRangeKernel = try_clEnqueueNDRangeKernel;
-  driver.clEnqueueReadBuffer = try_clEnqueueReadBuffer;
-  driver.clEnqueueWriteBuffer = try_clEnqueueWriteBuffer;
-  driver.clEnqueueFillBuffer = try_clEnqueueFillBuffer;
-  driver.clEnqueueCopyBuffer = try_clEnqueueCopyBuffer;
-  driver.clEnqueueMapBuffer = try_clEnqueueMapBuffer;
-  driver.clEnqueueUnmapMemObject = try_clEnqueueUnmapMemObject;
-  driver.clFinish = try_clFinish;
-  driver.clGetProgramBuildInfo = try_clGetProgramBuildInfo;
-  driver.clReleaseMemObject = try_clReleaseMemObject;
-  return &driver;
+  int i = 0;
+  while (drivers[i].table && drivers[i].table != table)
+  {
+    ++i;
+    assert_in_range(i, 0, sizeof drivers / sizeof *drivers - 1);
+  }
+  if (drivers[i].table)
+  {
+    return;
+  }
+  const size_t size = offsetof(cl_icd_dispatch, clCreateCommandQueueWithProperties);
+  drivers[i].table = table;
+  memcpy(&drivers[i].functions, table, size);
+  const size_t past = (size_t)table % (size_t)sysconf(_SC_PAGESIZE);
+  assert_int_equal(mprotect((char*)table - past, past + size, PROT_READ | PROT_WRITE), 0);
+  table->clBuildProgram = try_clBuildProgram;
+  table->clCreateBuffer = try_clCreateBuffer;
+  table->clCreateContext = try_clCreateContext;
+  table->clCreateKernel = try_clCreateKernel;
+  table->clSetKernelArg = try_clSetKernelArg;
+  table->clEnqueueNDRangeKernel = try_clEnqueueNDRangeKernel;
+  table->clEnqueueReadBuffer = try_clEnqueueReadBuffer;
+  table->clEnqueueWriteBuffer = try_clEnqueueWriteBuffer;
+  table->clEnqueueFillBuffer = try_clEnqueueFillBuffer;
+  table->clEnqueueCopyBuffer = try_clEnqueueCopyBuffer;
+  table->clEnqueueMapBuffer = try_clEnqueueMapBuffer;
+  table->clEnqueueUnmapMemObject = try_clEnqueueUnmapMemObject;
+  table->clFinish = try_clFinish;
+  table->clGetProgramBuildInfo = try_clGetProgramBuildInfo;
+  table->clReleaseMemObject = try_clReleaseMemObject;
+}
+
+cl_uint __real_mcor_list_platforms(cl_uint room, cl_platform_id* platforms);
+cl_uint __wrap_mcor_list_platforms(cl_uint room, cl_platform_id* platforms);
+cl_uint __wrap_mcor_list_platforms(cl_uint room, cl_platform_id* platforms)
+{
+  const cl_uint count = __real_mcor_list_platforms(room, platforms);
+  for (cl_uint i = 0; i < count; ++i)
+  {
+    replace_functions((cl_icd_dispatch*)mcor_driver(platforms[i]));
+  }
+  return count;
 }
 
 #define FAULT_ALLOCATION(name, parameters, arguments)                                              \

@@ -26,8 +26,3 @@ cl_uint mcor_list_platforms(cl_uint room, cl_platform_id* platforms)
   }
   return native + (found < room - native ? found : room - native);
 }
-
-const cl_icd_dispatch* mcor_driver(const void* object)
-{
-  return *(const cl_icd_dispatch* const*)object;
-}

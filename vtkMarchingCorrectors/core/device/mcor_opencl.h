@@ -18,7 +18,10 @@
 /* Lists the platforms, the built-in one first. */
 cl_uint mcor_list_platforms(cl_uint room, cl_platform_id* platforms);
 /* Returns the functions of the driver that made an object. */
-const cl_icd_dispatch* mcor_driver(const void* object);
+static inline const cl_icd_dispatch* mcor_driver(const void* object)
+{
+  return *(const cl_icd_dispatch* const*)object;
+}
 
 #define clBuildProgram(o, ...) mcor_driver(o)->clBuildProgram(o, __VA_ARGS__)
 #define clCreateBuffer(o, ...) mcor_driver(o)->clCreateBuffer(o, __VA_ARGS__)

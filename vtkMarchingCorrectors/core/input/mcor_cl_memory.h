@@ -12,7 +12,7 @@ typedef struct mcor_sight
 {
   mcor_input input;
   mcor_array* attributes; /* of this input */
-  struct mcor_seen* seen; /* [count] */
+  struct mcor_memory* seen; /* [count] */
   int count;
 } mcor_sight;
 

@@ -9,77 +9,77 @@
 #include "mcor_cl_call.h"
 #include "mcor_input.h"
 
-/* A buffer of the caller that the host sees. */
-typedef struct mcor_seen
+/* A buffer of the caller, and how the values of an array lie in it: in a row for each particle, or
+ * in a single row if no other bytes lie between them. Sizes and places are in bytes. */
+typedef struct mcor_memory
 {
-  cl_command_queue queue;
-  cl_mem mapped; /* NULL: values are a copy */
-  void* values;
-} mcor_seen;
+  cl_command_queue queue; /* in the buffer's own context */
+  cl_mem buffer;
+  size_t first[3], rows[3]; /* first: place, 0, 0. rows: size of a row, number of rows, 1 */
+  size_t stride;            /* from one row to the next */
+  bool can_map;             /* the host can use the values where they are */
+  bool is_mapped;           /* false: `values` are a copy */
+  void* values;             /* what the host sees */
+} mcor_memory;
 
 static size_t mcor_size_of(mcor_type type)
 {
   return type == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
 }
 
-/* Returns the bytes of one particle's values. */
-static size_t mcor_width_of(const mcor_array* array)
-{
-  return mcor_size_of(array->type) * (size_t)mcor_components(array);
-}
-
-/* Returns the bytes from one particle's values to the next one's. */
-static size_t mcor_stride_of(const mcor_array* array)
-{
-  return array->stride ? array->stride : mcor_width_of(array);
-}
-
-/* Fails unless the array lies within its buffer. Makes a queue in the buffer's own context. */
+/* Fails unless the array lies within its buffer. Makes memory->queue. */
 static mcor_status mcor_reach_memory(
-  mcor_context* context, const mcor_array* array, int64_t count, cl_command_queue* queue)
+  mcor_context* context, const mcor_array* array, int64_t count, mcor_memory* memory)
 {
-  const cl_mem memory = array->memory;
-  const size_t width = mcor_width_of(array), stride = mcor_stride_of(array);
-  const size_t first = array->offset, rest = (size_t)(count - 1);
+  const size_t number = mcor_size_of(array->type), first = array->offset;
+  const size_t width = number * (size_t)mcor_components(array);
+  const size_t stride = array->stride ? array->stride : width, rest = (size_t)(count - 1);
   cl_context own = NULL;
   size_t size = 0, found = 0;
   cl_device_id devices[64];
-  cl_int error = clGetMemObjectInfo(memory, CL_MEM_SIZE, sizeof size, &size, NULL);
+  const bool is_one_row = stride == width;
+  *memory = (mcor_memory){ .buffer = array->memory,
+    .first = { first },
+    .rows = { is_one_row ? width * (size_t)count : width, is_one_row ? 1 : (size_t)count, 1 },
+    .stride = is_one_row ? 0 : stride,
+    .can_map = is_one_row && first % number == 0 };
+  cl_int error = clGetMemObjectInfo(memory->buffer, CL_MEM_SIZE, sizeof size, &size, NULL);
   MCOR_CL_TRY(context, error, "clGetMemObjectInfo");
   MCOR_FAIL_IF(stride < width || first > size || size - first < width ||
       (size - first - width) / stride < rest,
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(MEMORY_TOO_SMALL), mcor_array_name(array, "array"),
     (long long)count, width, first, stride, size);
-  MCOR_CL_TRY(context, clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof own, &own, NULL),
+  MCOR_CL_TRY(context, clGetMemObjectInfo(memory->buffer, CL_MEM_CONTEXT, sizeof own, &own, NULL),
     "clGetMemObjectInfo");
   MCOR_CL_TRY(context, clGetContextInfo(own, CL_CONTEXT_DEVICES, sizeof devices, devices, &found),
     "clGetContextInfo");
-  *queue = clCreateCommandQueue(own, devices[0], 0, &error);
+  memory->queue = clCreateCommandQueue(own, devices[0], 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
   return MCOR_OK;
 }
 
 static mcor_status mcor_see(
-  mcor_context* context, mcor_array* array, int64_t count, mcor_seen* seen)
+  mcor_context* context, mcor_array* array, int64_t count, mcor_memory* seen)
 {
-  const size_t width = mcor_width_of(array), stride = mcor_stride_of(array);
-  const size_t at[3] = { array->offset, 0, 0 }, none[3] = { 0 }, bytes = (size_t)count * width;
-  const size_t rows[3] = { width, (size_t)count, 1 };
-  cl_int error;
-  MCOR_TRY(mcor_reach_memory(context, array, count, &seen->queue));
-  if (stride == width && array->offset % mcor_size_of(array->type) == 0)
+  MCOR_TRY(mcor_reach_memory(context, array, count, seen));
+  const size_t* rows = seen->rows;
+  const size_t bytes = rows[0] * rows[1], none[3] = { 0 };
+  cl_int error = CL_SUCCESS;
+  if (seen->can_map)
   {
-    array->data = seen->values = clEnqueueMapBuffer(
-      seen->queue, array->memory, CL_TRUE, CL_MAP_READ, *at, bytes, 0, NULL, NULL, &error);
-    MCOR_CL_TRY(context, error, "clEnqueueMapBuffer");
-    seen->mapped = array->memory;
-    return MCOR_OK;
+    seen->values = clEnqueueMapBuffer(seen->queue, seen->buffer, CL_TRUE, CL_MAP_READ,
+      seen->first[0], bytes, 0, NULL, NULL, &error);
+    seen->is_mapped = error == CL_SUCCESS;
   }
-  array->data = seen->values = malloc(bytes);
-  MCOR_TRY(mcor_allocated(context, seen->values != NULL));
-  error = clEnqueueReadBufferRect(seen->queue, array->memory, CL_TRUE, at, none, rows, stride, 0,
-    width, 0, seen->values, 0, NULL, NULL);
-  MCOR_CL_TRY(context, error, "clEnqueueReadBufferRect");
+  else
+  {
+    seen->values = malloc(bytes);
+    MCOR_TRY(mcor_allocated(context, seen->values != NULL));
+    error = clEnqueueReadBufferRect(seen->queue, seen->buffer, CL_TRUE, seen->first, none, rows,
+      seen->stride, 0, rows[0], 0, seen->values, 0, NULL, NULL);
+  }
+  MCOR_CL_TRY(context, error, seen->can_map ? "clEnqueueMapBuffer" : "clEnqueueReadBufferRect");
+  array->data = seen->values;
   return MCOR_OK;
 }
 
@@ -116,10 +116,10 @@ void mcor_end_sight(mcor_sight* sight)
 {
   for (int i = 0; i < sight->count; ++i)
   {
-    const mcor_seen* seen = sight->seen + i;
-    if (seen->mapped)
+    const mcor_memory* seen = sight->seen + i;
+    if (seen->is_mapped)
     {
-      clEnqueueUnmapMemObject(seen->queue, seen->mapped, seen->values, 0, NULL, NULL);
+      clEnqueueUnmapMemObject(seen->queue, seen->buffer, seen->values, 0, NULL, NULL);
       clFinish(seen->queue);
     }
     else
@@ -171,23 +171,20 @@ mcor_status mcor_store(
   {
     return MCOR_OK;
   }
-  cl_command_queue queue = NULL;
-  MCOR_TRY(mcor_reach_memory(context, to, count, &queue));
+  mcor_memory memory;
+  MCOR_TRY(mcor_reach_memory(context, to, count, &memory));
   void* made;
   const void* values = mcor_convert(from, to->type, count * components, &made);
-  const size_t width = mcor_width_of(to), stride = mcor_stride_of(to);
-  const size_t at[3] = { to->offset, 0, 0 }, none[3] = { 0 }, bytes = (size_t)count * width;
-  const size_t rows[3] = { width, (size_t)count, 1 };
+  const size_t none[3] = { 0 };
   mcor_status status = mcor_allocated(context, values != NULL);
   if (status == MCOR_OK)
   {
-    const cl_int error = stride == width
-      ? clEnqueueWriteBuffer(queue, to->memory, CL_TRUE, *at, bytes, values, 0, NULL, NULL)
-      : clEnqueueWriteBufferRect(
-          queue, to->memory, CL_TRUE, at, none, rows, stride, 0, width, 0, values, 0, NULL, NULL);
-    status = error == CL_SUCCESS ? MCOR_OK : mcor_cl_fail(context, error, "clEnqueueWriteBuffer");
+    const cl_int error = clEnqueueWriteBufferRect(memory.queue, memory.buffer, CL_TRUE,
+      memory.first, none, memory.rows, memory.stride, 0, memory.rows[0], 0, values, 0, NULL, NULL);
+    status =
+      error == CL_SUCCESS ? MCOR_OK : mcor_cl_fail(context, error, "clEnqueueWriteBufferRect");
   }
   free(made);
-  clReleaseCommandQueue(queue);
+  clReleaseCommandQueue(memory.queue);
   return status;
 }

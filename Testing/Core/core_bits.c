@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prints a hash of all bits of a few surfaces. same_bits.cmake compares the hashes between settings of the environment.
- * The argument chooses the cases. "small": small ones, for slow devices. "fewer": small ones, without cases that have
- * many nodes or run the same kernels as another case, for tools that slow everything down. "devices": some small ones
- * on all devices, each compared with the first device. "usual": the cases that every device can do. "kernels": all
- * other cases, and one for each SPH kernel and precision. */
+/* Prints a hash of each of a few surfaces. same_bits.cmake compares the hashes between settings of the environment. The
+ * argument chooses the cases; without an argument, all cases run. "small": all cases with few particles, for slow
+ * devices. "fewer": as "small", without cases that have many nodes or run the same kernels as another case, for tools
+ * that slow everything down. "devices": a few small cases on all devices, each compared with the first device. "usual":
+ * the cases that every device can do. "kernels": all other cases, and one for each SPH kernel and precision. */
 
 #include "core_fixture.h"
 #include "core_keep.h"
@@ -140,7 +140,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   return good;
 }
 
-/* Returns whether every device can do the case: in single precision, with a kernel that the built-in device always has. */
+/* Returns whether every device can do the case: it needs only single precision and the cubic spline. */
 static int is_usual(const bits_case* at)
 {
   return at->precision == MCOR_FLOAT32 && at->kernel == MCOR_CUBIC_SPLINE;
@@ -163,8 +163,8 @@ static int run_kernels(mcor_context* context)
   return good;
 }
 
-/* Runs the cases that need the same device program (a driver may compile it for half a minute). The first device sets
- * `expected`; all other devices' hashes must be equal. */
+/* Runs the small cases that share one device program (to build another may take half a minute). Device 0 sets
+ * `expected`. Returns whether all cases succeed and, on other devices, have the expected hashes. */
 static int run_device(int device, uint64_t expected[])
 {
   char number[16];
@@ -187,8 +187,8 @@ static int run_device(int device, uint64_t expected[])
   return good;
 }
 
-/* Runs the cases on all devices, the built-in one first, each with the form of the kernels (cpu or gpu) that is its
- * default. */
+/* Runs the cases of run_device on all devices, the built-in one first. Each device uses its default form of the OpenCL
+ * kernels, the one for CPUs or for GPUs. */
 static int run_devices(void)
 {
   uint64_t expected[sizeof cases / sizeof cases[0]];

@@ -3,9 +3,9 @@
 #ifndef core_fixture_h
 #define core_fixture_h
 
-/* Helpers of the core's unit tests. The oracle library provides its double-precision field and its mesh checker. Every
- * array given to the core is a heap block of exactly its size, so that a sanitizer sees any read beyond its end. The
- * headers of C that most tests need come from here. */
+/* Helpers of the core's unit tests. The oracle library provides a field in double precision and a mesh checker. Arrays
+ * of particles are heap blocks, mostly of exactly the size needed, so that a sanitizer sees reads beyond the end. This
+ * header includes the C headers that most tests need. */
 
 #include "mcor_internal.h"
 #include "mcor_program.h"
@@ -24,7 +24,7 @@
 /* cmocka needs the headers above to be included first. */
 #include <cmocka.h>
 
-/* Unless the condition holds, fails and prints the values that follow. */
+/* Unless the condition holds, prints the further arguments and fails the test. */
 #define CORE_CHECK(condition, ...)                                                                 \
   do                                                                                               \
   {                                                                                                \
@@ -36,7 +36,7 @@
     }                                                                                              \
   } while (0)
 
-/* The program's main, which runs these tests. */
+/* Defines main, which runs the given tests. */
 #define CORE_MAIN(set_up, tear_down, ...)                                                          \
   int main(void)                                                                                   \
   {                                                                                                \
@@ -68,7 +68,7 @@ bool core_told(const mcor_context* context, const char* words);
       mcor_status_name(core_status_), mcor_last_error(context));                                   \
   } while (0)
 
-/* Stands before a declaration; the object is freed at the end of its block, in reverse order of declaration. */
+/* Stands before the declaration of an object, which is freed at the end of its block. Later objects are freed first. */
 #define CORE_OWNED(free_it) __attribute__((cleanup(free_it)))
 #define CORE_SET CORE_OWNED(particle_set_free) particle_set
 #define CORE_SURFACE CORE_OWNED(mcor_free_surface) mcor_surface
@@ -95,15 +95,15 @@ void core_create_form(mcor_context** context, const char* form);
 /* Returns a heap block that holds a copy of exactly these bytes. */
 void* core_copy(const void* data, size_t bytes);
 
-/* Makes n^3 particles with spacing 1 around the origin, displaced by up to `jitter`, with smoothing length 1.3, volume
- * 1 and scalar value(x). */
+/* Makes n^3 particles with spacing 1 around the origin, displaced by up to `jitter` along each axis. The smoothing
+ * length is 1.3, the volume 1 and the scalar value(x). */
 particle_set core_make_block(
   int n, double jitter, uint64_t seed, double (*value)(const double x[3]));
-/* Makes a block of n^3 particles with spacing 1, a sheet above it, a thread and four lone drops. Particles are
- * displaced by up to half of `jitter`; they have volume 1 and a rough scalar. */
+/* Makes n^3 particles in a block of spacing 1, a sheet above it, a thread and four lone particles, displaced by up to
+ * half of `jitter` along each axis. The volume is 1, the smoothing length 0; the scalar has noise. */
 particle_set core_make_splash(int n, double jitter, uint64_t seed);
-/* Makes shells of particles with radii r from 1 to `ratio`, without a cone around the x axis. Their spacing is about r
- * times `step`. The scalar is (z + 0.2 y) / r. */
+/* Makes shells of particles with radii r from 1 to `ratio`, without a cone around the positive x axis. The spacing of a
+ * shell's particles is about r times `step`. The scalar is (z + 0.2 y) / r. */
 particle_set core_make_graded(double ratio, double step);
 
 /* Makes particles at random in a cube of edge `size`, with smoothing lengths in [h_min, h_max] (log-uniform) and
@@ -125,26 +125,26 @@ particle_set core_permute(const particle_set* set, const int64_t* order);
 /* Returns a random order of 0 .. count - 1; free it with free(). */
 int64_t* core_make_order(int64_t count, uint64_t seed);
 
-/* Calls mcor_widen if the options ask for it, then mcor_extract with its factors. */
+/* Calls mcor_widen if the options ask for it, then mcor_extract with the factors and volumes of mcor_widen. */
 mcor_status core_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface);
-/* Calls core_extract_widened, and fails the test unless that succeeds. */
+/* Returns the surface of core_extract_widened. Fails the test unless this call succeeds. */
 mcor_surface core_extract(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* Returns the hash of the surface that core_extract makes, which must have triangles. */
 uint64_t core_hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options);
 
-/* Fails unless the surface is an oriented manifold without degenerate triangles. */
+/* Fails unless the surface is an oriented manifold without degenerate triangles and without coincident points. */
 mesh_report core_check_mesh(const mcor_surface* surface);
-/* Like core_check_mesh, but an edge may have two vertices in one place if only two opposite cells at it are valid. */
+/* Like core_check_mesh, but points may coincide: an edge has two if only two opposite cells at the edge are valid. */
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
 /* Does what core_check_mesh does, and fails unless exactly the points of the mesh's boundary are flagged. */
 void core_check_flags(const mcor_surface* surface);
 /* CORE_HASH_OF_NOTHING: the hash of no bytes. core_hash_bytes adds bytes to a hash, unless data is NULL. */
 #define CORE_HASH_OF_NOTHING 0xCBF29CE484222325u
 uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
-/* Hashes the number of points, points, triangles and every optional array. */
+/* Hashes points, triangles, lines and optional arrays (of an attribute, only as many numbers as points). */
 uint64_t core_hash(const mcor_surface* surface);
 
 /* Compiles the kernels in `source` together with the library's sources, so that mcor_launch can

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Runs the smallest cases that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, projections,
- * box and period, and a tank with all options in turn. Prints a hash of all result bits for same_bits.cmake, and writes
- * the results for bits.cmake. Other tests check the results. The command line may name the cases to run. */
+/* Runs small cases that reach all kernels of adaptive cubes, boxes, periods, planes, probes, derivatives, gauges,
+ * fluxes and projections, and a tank with many options. Prints a hash of each result for same_bits.cmake; writes the
+ * results for bits.cmake. Other tests check the results. The command line may name groups of cases, see `runs`. */
 
 #include "core_keep.h"
 #include "core_parts.h"
@@ -129,8 +129,8 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
   return modules_surface(context, "uniform_period_caps", &fine, &options) && good;
 }
 
-/* Extracts lines of particles in a plane: first of the lowest layer of fine particles alone, then of this layer and the
- * lowest layer of coarse particles. */
+/* Extracts isolines from particles in a plane: first from the lowest layer of fine particles alone, then from this
+ * layer and the lowest layer of coarse particles. */
 static int modules_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;

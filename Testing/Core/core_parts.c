@@ -38,8 +38,8 @@ unsigned char* core_put_point(
   return to;
 }
 
-/* Writes a triangle's key, and how many earlier triangles have the same key. Sorted by these two numbers, the triangles
- * of all boxes have the order of the whole surface. Returns where the next bytes go. */
+/* Writes the key of triangle i, and *nth: how many triangles before it have the same key. Sorted by these bytes, the
+ * triangles of all boxes have the order of the whole surface. Returns where the next bytes go. */
 static unsigned char* put_place(unsigned char* to, const mcor_surface* s, int64_t i, uint64_t* nth)
 {
   const uint64_t* key = s->triangle_keys + MCOR_TRIANGLE_KEY * i;

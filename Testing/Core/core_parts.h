@@ -7,8 +7,8 @@
 
 #include "core_fixture.h"
 
-/* Collects triangles of several surfaces, and pieces of lines as triangles that have the second end twice: the bytes of
- * their corners, one after the other. */
+/* Collects the triangles of several surfaces as bytes: the triangle's place in the order, if it has a key, then all
+ * arrays of its three corners. A piece of a line is kept as a triangle that has the second end twice. */
 typedef struct core_triangles
 {
   int64_t count;
@@ -46,14 +46,13 @@ void core_check_cuts(
 void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
   const mcor_options* options, const core_cut* cuts, int count);
 
-/* Asks for keys and all arrays of points. */
+/* Asks for keys and for all arrays of points except the boundary eigenvalue and curvatures. */
 void core_ask_for_all(mcor_options* options);
 
-/* Appends particle i of the set to `near` unless the particle is farther than `margin` from the box. The caller has
- * made `near` large enough. */
+/* Appends particle i of the set to `near` unless the particle is `margin` or farther from the box along an axis. */
 void core_add_near(
   particle_set* near, const particle_set* set, int64_t i, const double box[6], double margin);
-/* Returns all particles within `margin` of the box, in another order. */
+/* Returns all particles within `margin` of the box, in reverse order. */
 particle_set core_take_near(const particle_set* set, const double box[6], double margin);
 
 #endif

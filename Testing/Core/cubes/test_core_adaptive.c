@@ -26,8 +26,8 @@ static void one_level_is_uniform(void** state)
   assert_true(core_hash(&adaptive) == core_hash(&uniform) && uniform.point_count > 100);
 }
 
-/* The upper half of the lattice has values above iso, the lower half below. At most 38 of a leaf's 64 nodes, on
- * average, may be evaluated: a leaf that certainly lies on one side needs only its nodes next to a crossed edge. */
+/* Particles above z = 0.3 have values above iso, all others below. A leaf (an undivided brick) that certainly lies on
+ * one side needs only its nodes next to a crossed edge: on average at most 38 of its 64 nodes are evaluated. */
 static void few_nodes_are_evaluated(void** state)
 {
   static const double iso = 0.1;

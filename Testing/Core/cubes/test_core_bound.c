@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares the bound on the field, which MCOR_COMPLETE uses, with samples of the field. Checks all nodes of the bricks
- * that are proved to be inside. */
+/* Compares bounds of the field in a box, by which MCOR_COMPLETE excludes boxes, with samples of the field. Checks all
+ * nodes of the bricks that are proved to be inside. */
 
 #include "core_fixture.h"
 
 /* A box is given by its first brick (4 x 4 x 4 cubes) and its edge in cubes. For each box test_bound writes seven
  * numbers: the field's lower and upper bound and their rounding error, the weight's upper bound and its rounding error,
- * the number of particles, and the state. test_inside writes whether each brick is proved to be inside. */
+ * the number of particles, and the state. test_inside writes whether each brick is proved to be inside (above iso). */
 static const char source[] =
   "__kernel void test_bound(MCOR_GRID_PARAMS, const int box_count, const real iso,\n"
   "  const real node_threshold, __global const int4* boxes, __global real* out)\n"

@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the triangles of cells: those of the case table with all its decisions, and those of cells beside finer cells.
- * Cells with random nodes, side by side, must make a closed surface. */
+/* Tests the triangles of a cell: by the case table, for all decisions on faces and tunnels, and beside finer cells.
+ * Cells side by side, with random nodes, must make a closed surface. */
 
 #include "core_fixture.h"
 #include "mcor_adaptive_cell.h"
 
-/* A lattice with `ends` nodes along an axis. above: which nodes are above iso; nodes on the lattice's border are below.
- * A vertex is named by the lower node of its edge, and the edge's axis. */
+/* A lattice with `ends` nodes along each axis. above: which nodes are above iso; nodes on the lattice's border are
+ * below. vertex: for each node and axis, the number of the vertex on the edge that begins at the node. */
 typedef struct lattice
 {
   int ends;
@@ -65,9 +65,9 @@ static int32_t vertex_on(lattice* l, int node, int axis, int length)
   return *vertex;
 }
 
-/* Fails unless the triangles are an oriented closed manifold that encloses the nodes above iso. volume_above: the
- * volume of one cell for each of these nodes. Around a lone node the surface encloses less than a cell, so 0.4 of
- * volume_above suffices. Frees the lattice. */
+/* Fails unless the triangles are an oriented closed manifold that encloses more than 0.4 of volume_above. volume_above:
+ * the volume of one cell for each node above iso; around a lone node the surface encloses less than a cell. Frees the
+ * lattice. */
 static void check_closed(lattice* l, double volume_above)
 {
   const mcor_surface surface = { .points = l->points,
@@ -111,8 +111,8 @@ static int crossed_edges(int cube_case)
   return count;
 }
 
-/* Checks ambiguous faces. A bit of `joined` says that a face joins its corners above iso. On such a face, one triangle
- * side must cut off each corner below iso; on any other face, each corner above. */
+/* Checks ambiguous faces. A bit of `joined` says that a face joins its corners above iso. On such a face, each corner
+ * below iso must be cut off by one triangle side; on any other ambiguous face, each corner above iso. */
 static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
 {
   uint8_t side[24][24] = { { 0 } };
@@ -132,8 +132,8 @@ static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
   }
 }
 
-/* Chooses a row of the table for a case, at random with a tunnel or without. Two loops with a and b sides have a + b -
- * 4 triangles without a tunnel, and a + b with one. */
+/* Chooses a row of the table (a way to triangulate) for a case, at random with or without a tunnel, and checks the row.
+ * Two loops with a and b sides have a + b - 4 triangles without a tunnel, and a + b with a tunnel. */
 static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed)
 {
   const mcor_cell_row* first = table.rows + (table.cases[cube_case] >> 6);
@@ -154,7 +154,7 @@ static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed
   return tunnel > 0 ? first + tunnel : row;
 }
 
-/* Makes the triangles of all cells, with random decisions on faces and tunnels. */
+/* Makes and checks the triangles of all cells, with random decisions on faces and tunnels. Marks the rows in `used`. */
 static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS])
 {
   const int n = l->ends;
@@ -208,16 +208,16 @@ static void test_whole_table(void** state)
   }
 }
 
-/* A cell without finer cells around it must get the triangles of its case's first row: no nodes are joined across a
- * face, and there is no tunnel. If only two opposite corners are above, the case has one more row, with a tunnel that
- * joins them. */
+/* A cell without finer cells around it must get the triangles of its case's first row, which joins no nodes above iso
+ * across a face and has no tunnel. If only two opposite corners are above iso, the case has a second row, with a tunnel
+ * between these corners. */
 static void test_first_rows(void** state)
 {
   for (int c = 0; c < 256; ++c)
   {
     const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
     uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
-    /* Bits of middle nodes, which do not exist here, are set to test that they do not matter. */
+    /* Bits of some middle nodes, which do not exist here, are set: these bits must not matter. */
     uint32_t above = 0x2aaaaaa;
     int flat = 0;
     for (int k = 0; k < 8; ++k)
@@ -239,8 +239,8 @@ static void test_first_rows(void** state)
 
 /* ---- cells beside finer ones ---- */
 
-/* Checks side a, b of the triangles a, b, c and b, a, d of one cell. If the side lies in a face, or in one quarter of a
- * divided face, both triangles must lie in it: else the cell beyond could have this side. Unit: half cells. */
+/* Checks side a, b of the triangles a, b, c and b, a, d of a cell. If the side lies in an undivided face or a quarter
+ * of a divided face, both triangles must lie in this face: the cell beyond may have the side, too. Unit: half cells. */
 static void check_inner_side(
   const double* a, const double* b, const double* c, const double* d, uint32_t split)
 {
@@ -279,7 +279,7 @@ static void check_inner_sides(
   }
 }
 
-/* Adds a cell of edge `step`. `split` says which middles of its edges and faces are nodes. */
+/* Adds the triangles of a cell of edge `step`. split: which middles of the cell's edges and faces are nodes. */
 static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
 {
   static const int stride[3] = { 1, 3, 9 };

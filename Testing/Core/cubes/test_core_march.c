@@ -6,7 +6,7 @@
 #include "core_parts.h"
 #include "mcor_vector.h"
 
-/* The surface around one huge value is found, and it ends where the particle's support does. */
+/* The surface around a particle with a huge scalar must be found, near the end of the particle's support. */
 static void test_outlier(void** state)
 {
   for (int sign = -1; sign <= 1; sign += 2)
@@ -85,7 +85,7 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
 }
 
 /* ---- Node by node. Each particle lies on a node and reaches no other node, so the field at a node is the value of its
- * particle, and nodes without a particle have no weight. This makes any pattern of valid and invalid cells. ---- */
+ * particle, and nodes without a particle have no weight. Such sets make any pattern of valid and invalid cells. ---- */
 
 #define NODES 8
 

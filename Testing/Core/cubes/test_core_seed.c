@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests seeds: bricks between two particles on different sides of iso become seeds, and the line between them marks
- * every cell that it crosses. The oracle checks that complete seeds miss no edge. */
+/* Tests seeds: the line between two particles on different sides of iso marks every cell that it crosses; rounding
+ * loses no seeds. The oracle checks that complete seeds miss no edge. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
 
 #define NO_BRICK 4
 
-/* The cells that the last extraction by pairs of particles (MCOR_PAIRS) marked: one byte per cell of a box of the
- * lattice. Bricks that are certainly on one side of iso have no marked cells. */
+/* The cells that the last extraction by pairs of particles (MCOR_PAIRS) marked. cell: for each cell of the lattice, 1
+ * (marked), 0 (not marked) or NO_BRICK (the cell's brick was not evaluated). */
 typedef struct marked_cells
 {
   int low[3], size[3];
@@ -67,8 +67,8 @@ static marked_cells read_cells(mcor_context* context)
   return m;
 }
 
-/* Walks along a segment in small steps. Every cell that the segment crosses by more than rounding must be marked. Cells
- * that rounding may add get the value 2. */
+/* Walks along a segment in small steps. Every cell that the segment crosses by more than rounding must be marked or
+ * have NO_BRICK. Marked cells on the segment, or within rounding of it, get the value 2. */
 static void check_line(marked_cells* m, const double p[3], const double q[3], double cube)
 {
   enum
@@ -99,7 +99,7 @@ static void check_line(marked_cells* m, const double p[3], const double q[3], do
 }
 
 /* Extracts with MCOR_PAIRS. Two particles are a pair if only one scalar is below 0, and their distance is below the
- * larger of their smoothing lengths. Exactly the cells that the lines between pairs cross must be marked. */
+ * larger of their smoothing lengths. Exactly the cells on the lines of all pairs must be marked, to within rounding. */
 static void check_pairs(mcor_context* context, const particle_set* set, double cube)
 {
   const double iso = 0;
@@ -166,7 +166,7 @@ static void test_line(void** state)
   }
 }
 
-/* Checks random sets: two particles are a pair if either's smoothing length reaches the other. */
+/* Checks random sets: the larger smoothing length of two particles decides whether they are a pair. */
 static void test_pairs(void** state)
 {
   for (uint64_t seed = 1; seed <= 4; ++seed)
@@ -177,8 +177,8 @@ static void test_pairs(void** state)
   }
 }
 
-/* The two particles of a pair are as far apart as a pair may be, to within rounding, and pairs are far from each other.
- * The OpenCL code for CPUs and the code for GPUs group particles differently, and must find the same number of cells. */
+/* The particles of a pair are the greatest allowed distance of 1.0001 h apart, to within rounding. The OpenCL code for
+ * CPUs and the code for GPUs group particles differently, and must find the same number of cells. */
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;
@@ -210,8 +210,8 @@ static void test_pairs_in_each_form(void** state)
   assert_int_equal(cells[0], cells[1]);
 }
 
-/* Where all particles have the iso value, rounding may put the mean on either side. Cells there must be seeds, and stay
- * seeds if an extraction with another iso value evaluated their nodes before. */
+/* Where all particles have the iso value, rounding may put the mean on either side. The surface must be the same
+ * whether or not an extraction with another iso value evaluated the nodes before. */
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };

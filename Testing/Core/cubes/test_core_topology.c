@@ -7,7 +7,7 @@
 #include "core_fixture.h"
 #include "mcor_vector.h"
 
-/* Makes particles around the origin, closer together than the cubes, with the scalar given by `value`. */
+/* Makes particles of spacing 0.5 around end / 2. The scalar is sign * value(x, end). */
 static particle_set make_particles(
   double (*value)(const double x[3], const double end[3]), const double end[3], double sign)
 {
@@ -48,7 +48,7 @@ static double balls(const double x[3], const double end[3])
   return 1.2 * 1.2 - fmin(mcor_dot(x, x), mcor_dot(d, d));
 }
 
-/* Checks that the surface is closed, and returns the number of its parts. */
+/* Extracts a surface, checks that each of its parts is closed and has no handle, and returns the number of parts. */
 static int64_t count_parts(mcor_context* context, const particle_set* set, double cube,
   mcor_topology topology, mcor_statistics* statistics)
 {
@@ -71,9 +71,9 @@ static const double diagonals[][3] = { { 3, 3, 0 }, { 3, -3, 0 }, { 3, 0, 3 }, {
   { 0, 3, 3 }, { 0, -3, 3 }, { 3, 3, 3 }, { -3, 3, 3 }, { 3, -3, 3 }, { 3, 3, -3 } };
 
 /* With MCOR_TOPOLOGY_FIELD, a thread stays whole and balls that do not touch stay apart, above or below iso, as on a
- * fine lattice. The case table always joins nodes below across a face, and keeps nodes above apart. The expected
- * numbers are counted by hand: ambiguous faces (the face that the diagonal crosses, between two cells); faces whose
- * nodes above are joined; cells with two loops; tunnels. */
+ * fine lattice. The case table always joins nodes below iso across a face, and keeps nodes above iso apart. The
+ * expected numbers are counted by hand: ambiguous faces (the face that the diagonal crosses, between two cells); faces
+ * whose nodes above iso are joined; cells with two loops; tunnels. */
 static void test_diagonals(void** state)
 {
   for (int i = 0; i < 40; ++i)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests how the leaves of adaptive cubes are made: levels, limits, cancelling. The oracle checks that the leaves are
- * the right ones. */
+/* Tests how the leaves of adaptive cubes (bricks that are not split) are made: levels, limits, cancelling. The oracle
+ * checks that the leaves are the right ones. */
 
 #include "core_fixture.h"
 #include "mcor_tree.h"
@@ -108,8 +108,8 @@ static int stop_at(void* user, double fraction, const char* phase)
   return (*left)-- == 0;
 }
 
-/* The run asks often whether to go on: while particles split bricks (few particles at a time if they reach far), while
- * bricks are joined and split, and while leaves are listed. */
+/* The run asks its progress callback often whether to go on: while particles split bricks (few particles at a time if
+ * they reach far), while bricks are joined and split, and while leaves are listed. Each answer can cancel the run. */
 static void making_leaves_can_be_cancelled(void** state)
 {
   enum

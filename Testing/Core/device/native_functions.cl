@@ -74,7 +74,7 @@ TRY_VECTOR(8, double8, double, long8, long)
 TRY(uchar8_convert, int8, uchar8, int, convert_int8(a[i]))
 TRY(int4_double, double4, int4, int, convert_double4(a[i]))
 
-/* All work-items change one number with the atomic functions. */
+/* All work-items change the same five numbers, each number with another atomic function. */
 #define TRY_ATOMIC(T)                                                                              \
   __kernel void try_##T##_atomic(                                                                  \
     __global const T* a, __global const T* b, __global const T* c, __global T* r)                  \

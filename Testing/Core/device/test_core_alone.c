@@ -25,7 +25,7 @@ static mcor_status extract(mcor_context* context, uint64_t* hash)
   return extract_with(context, MCOR_CUBIC_SPLINE, MCOR_FLOAT32, hash);
 }
 
-/* The message names the kernels that were not compiled with the library, and what to do. */
+/* If kernels were not compiled with the library, the message names the kernels and says what to do. */
 static void test_names_what_is_missing(void** state)
 {
   static const struct

@@ -6,7 +6,7 @@
 
 #include "core_fault.h"
 
-/* A call of the library in which every step is made to fail once. */
+/* A call of the library. One after the other, its OpenCL calls and allocations are made to fail. */
 typedef struct sweep
 {
   /* Makes the call. If it succeeds, *hash becomes the hash of the result; if it fails, the result must be empty. */
@@ -182,8 +182,8 @@ static mcor_input with_other_versions(const sweep* s, int n)
   return input;
 }
 
-/* Lets every step-th OpenCL call fail, one in each run, and returns the number of calls. kept: the device holds buffers
- * that may be released, so that a call that finds no memory must succeed at its second attempt. */
+/* Lets every step-th OpenCL call fail, one in each run. Returns the number of calls, rounded up to a multiple of step.
+ * kept: buffers on the device may be released, so a call that lacks memory must succeed at its second attempt. */
 static int sweep_calls(mcor_context* context, const sweep* s, cl_int error, int kept)
 {
   const mcor_status expected = error == CL_INVALID_COMMAND_QUEUE ? MCOR_DEVICE_ERROR
@@ -248,7 +248,7 @@ static int sweep_allocations(mcor_context* context, const sweep* s)
   return n;
 }
 
-/* Keeps in `s` the hash of the right result, and how many bytes and buffers a context holds after a release. */
+/* Keeps in `s` the hash of the right result, and how many bytes a context holds after a release of memory. */
 static void begin_sweep(mcor_context* context, sweep* s)
 {
   s->input.particles_version = s->input.scalar_version = 1000000;
@@ -334,7 +334,7 @@ static void test_probe_and_derive(void** state)
   free(points);
 }
 
-/* Lets calls fail while the trimmed bands of a plane are filled. */
+/* Lets calls fail in a run that fills the band between two iso values in a plane. */
 static void test_filled(void** state)
 {
   static const double isos[2] = { -1e9, 0.5 };
@@ -429,7 +429,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* Tests a large buffer, which is mapped so that its pages are reserved; the mapping may fail. */
+/* Enlarges a buffer beyond MCOR_LARGE_ARRAY: the new buffer is mapped to reserve its pages. Each call fails once. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;
@@ -457,7 +457,7 @@ static void test_extend(void** state)
   assert_int_equal(n, 4); /* the calls are create, map, unmap and copy */
 }
 
-/* On a device with memory of its own, copying to the host's locked memory fails. The memory must be free again. */
+/* On a device with memory of its own, a copy to the host's locked memory fails. The locked memory must be released. */
 static void test_read_fails(void** state)
 {
   mcor_context* context = *state;
@@ -518,7 +518,7 @@ static void test_error_names(void** state)
     core_fail_nothing();
     CORE_CHECK(strstr(mcor_last_error(context), names[i].name), mcor_last_error(context));
   }
-  /* These are all codes of OpenCL 1.2: -1 to -19, and -30 to -68. */
+  /* OpenCL 1.2 has the codes -1 to -19 and -30 to -68. */
   for (cl_int code = -68; code < 0; ++code)
   {
     core_fail_call(0, code);

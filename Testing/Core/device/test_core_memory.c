@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests arrays in OpenCL buffers. The buffers belong to a context of the caller's own, here one of
- * PoCL's. */
+/* Tests arrays in OpenCL buffers. The buffers belong to an OpenCL context that the caller has made, here on PoCL. */
 
 #include "core_fixture.h"
 #include "mcor_cl_memory.h"

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests the built-in device: its functions, compared with PoCL's; its threads; its objects. */
+/* Tests the built-in device: its functions, compared with PoCL's; its threads; surfaces made on it. */
 
 #include "core_fixture.h"
 #include "mcor_parallel.h"
@@ -101,7 +101,7 @@ static cl_program build(mcor_context* context)
   return program;
 }
 
-/* Returns the size in bytes of one result of a kernel. */
+/* Returns the size in bytes of one number in a kernel's results. */
 static size_t result_size(const char* name)
 {
   const int wide = strstr(name, "_double") || strncmp(name, "try_double", 10) == 0 ||
@@ -245,8 +245,8 @@ static void test_fork(void** state)
   assert_true(extract(context) == hash);
 }
 
-/* Limits the process's address space, where some drivers would end the process. The built-in device must work, named or
- * by default, and a driver's device must be refused with a message. */
+/* Limits the address space of a child process so far that some drivers would end it. The built-in device must work,
+ * named or by default, and a driver's device must be refused with a message. */
 static void test_little_room_for_drivers(void** state)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

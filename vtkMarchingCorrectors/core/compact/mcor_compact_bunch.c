@@ -29,9 +29,9 @@
 
 /* Gives each vertex the key of its node: the end of its edge that is nearer by linear
  * interpolation; if both are equally near, the lower end. The key contains the last bit of the
- * level: levels side by side differ by one, so nodes of different levels have different keys.
- * Vertices stay (MCOR_FROZEN) if they lie on a side that caps close, on a side of the period or on
- * the border that the node threshold leaves, or if they belong to cuts or caps. */
+ * level: levels of neighbouring cells differ by at most one, so nodes of different levels have
+ * different keys. Vertices stay (MCOR_FROZEN) if they lie on a side that caps close, on a side of
+ * the period or on the border that the node threshold leaves, or belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

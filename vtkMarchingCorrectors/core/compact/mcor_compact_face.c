@@ -9,7 +9,7 @@
 /* Badness of a triangle, or line, that is turned over: its normal and the sum of its corners' unit
  * gradients point to the same side, or are at a right angle. */
 #define MCOR_TURNED 8.0
-/* A triangle with a larger badness is a sliver: its least angle is below 20 degrees. */
+/* A triangle of larger badness is a sliver (least angle below 20 degrees), or is turned over. */
 #define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
 
 /* Returns the badness of a triangle or line: MCOR_TURNED if it is turned over or has no extent;

@@ -29,12 +29,11 @@ enum
   MCOR_ON_BOUNDARY = 2,
   MCOR_ALL_VERTICES = 3
 };
-/* Launch a heavy kernel once for each level; the kernel then measures lengths in cells of this
- * level. It takes MCOR_GRID_PARAMS, then the arguments that these functions add, then up to
- * MCOR_MORE_ARGS `more`. mcor_launch_at_vertices adds three: the number of groups of vertices, the
- * array of groups, and the vertices' nodes. mcor_launch_by_level adds two for the elements
- * [first[l], end[l]) of level l: the first element, and their number; each element has `items`
- * work-items. */
+/* Launch a heavy kernel for each level; the kernel then measures lengths in cells of this level. It
+ * takes MCOR_GRID_PARAMS, then the arguments that these functions add, then up to MCOR_MORE_ARGS
+ * `more`. mcor_launch_at_vertices adds three: the number of groups of vertices, the array of
+ * groups, and the vertices' nodes. mcor_launch_by_level adds two for the elements [first[l],
+ * end[l]) of level l: the first element, and their number; each element has `items` work-items. */
 #define MCOR_MORE_ARGS 32
 #define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
   mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \

@@ -11,10 +11,10 @@
 #define MCOR_FIRST_CUBES 32768
 
 /* Finds the states of the cubes in block_keys, and which cubes are inactive (the surface is neither
- * in them nor beside them). Evaluates the `parts` cubes that were made by dividing; `index` has
- * their places, or is empty if the places are 0, 1, 2, .... All other cubes are blocks that were
- * kept from an earlier iso value or call, and whose larger cubes are inactive now. These blocks
- * become void: they count as if they did not exist. */
+ * in them nor beside them). Evaluates `parts` cubes: the first ones, or those made by dividing.
+ * `index` has their places, or is empty if the places are 0, 1, 2, .... All other cubes are blocks
+ * that were kept from an earlier iso value or call, and whose larger cubes are inactive now. These
+ * blocks become void: they count as if they did not exist. */
 static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {
@@ -72,15 +72,16 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     context, keys, *parts + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* Makes the active blocks. If bricks have slots already, also keeps all earlier blocks. */
+/* Makes the blocks, except those in inactive larger cubes, and finds their states. If bricks have
+ * slots already, also keeps all earlier blocks. */
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_rung* rungs = context->lattice.rungs;
   uint64_t total = UINT64_MAX;
   int level = -1;
-  /* Numbers the cubes of all levels up to the size of the first cubes. Larger cubes are like blocks
-   * of higher levels, 32 << level nodes long. */
+  /* Numbers the cubes of all levels, from the blocks (level 0) to the first cubes. A cube is 32 <<
+   * level nodes long. */
   for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
        rungs[level + 1].base = rungs[level].base + total)
   {

@@ -26,8 +26,8 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-/* Finds on which side of the iso value the nodes are, in all bricks with a bit in `evaluated`. The
- * nodes with bits in `evaluated` become known. */
+/* Finds on which side of the iso value the nodes are, and which are valid (of enough weight), in
+ * all bricks with a bit in `evaluated`. The nodes with bits in `evaluated` become known. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   const mcor_brick_data* now = &context->bricks.now;

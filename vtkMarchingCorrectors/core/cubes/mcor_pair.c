@@ -40,7 +40,7 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
 }
 
 /* Gives slots (places for node values) to the bricks with nodes of reached cells, and evaluates
- * these bricks. *placed: whether this was done: some bricks are new, or this is the first call. */
+ * them. *placed: whether some bricks are new, or this is the first call; else nothing is done. */
 static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;

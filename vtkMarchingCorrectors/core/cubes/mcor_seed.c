@@ -60,8 +60,8 @@ static mcor_status mcor_count_seeds(mcor_context* context)
 
 /* Tests regions of 2^3 bricks. Requests the bricks that the surface may reach, whose cells are the
  * seeds, and lists their regions. Gives slots to these bricks, and to all bricks that are known
- * from earlier iso values. Then tests the requested bricks one by one, and evaluates most of them.
- * In a plane, skips this last step, because bounds cost more than a brick's few nodes. */
+ * from earlier iso values. Then tests the requested bricks one by one; on CPUs, also evaluates the
+ * uncertain ones. In a plane, skips this last step: bounds cost more than a brick's few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -106,8 +106,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
         MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid));
 }
 
-/* For uniform cubes: evaluates the bricks whose states require it. Then adds, round by round, the
- * bricks that the last round's nodes require; see mcor_seed.cl. */
+/* For uniform cubes: evaluates uncertain bricks, and neighbours that are certainly on different
+ * sides. Then, round by round, evaluates each brick that touches a node on the other side. */
 static mcor_status mcor_complete_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

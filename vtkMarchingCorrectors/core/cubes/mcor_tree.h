@@ -87,7 +87,7 @@ bool mcor_set_add_brick(const mcor_tree* tree, int level, const int brick[3], mc
 /* Fails unless `fit` is set: there may be too many leaves, or memory for them ran out. */
 mcor_status mcor_leaves_fit(mcor_context* context, bool fit);
 
-/* mcor_tree_split.c. Finds all bricks that the particles of all ranks split. */
+/* mcor_tree_split.c. Finds all split bricks, from the particles of all ranks. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree);
 
 /* mcor_tree_brick.c. Lists the keys of all split bricks, ascending. Free them with free(). */
@@ -103,10 +103,10 @@ mcor_status mcor_take_splits(
  * or the cell of the brick. */
 #define MCOR_TREE_KEY_BITS 55
 
-/* Lists in `globals` the bricks that the particles of all ranks split; with one level, none. */
+/* Lists in `globals` all split bricks, from the particles of all ranks; with one level, none. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
-/* Makes the leaves in the box, and the blocks of all bricks whose nodes the leaves may need. */
+/* Makes the leaves near the box, and the blocks of all bricks whose nodes the leaves may need. */
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input);
 void mcor_release_tree(mcor_tree* tree);
 

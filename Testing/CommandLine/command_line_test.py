@@ -25,7 +25,7 @@ WITH_DISPLAY = pathlib.Path(__file__).resolve().parent.parent / "with-display.sh
 
 
 def drop_privileges():
-    """Drops root's rights in a new process (as preexec_fn), so that the modes of files count. The user stays root, because another user
+    """Drops root's rights in a new process (as preexec_fn), so that file permissions count. The user stays root, because another user
     may not reach the build tree."""
     if os.geteuid() == 0:
         libc = ctypes.CDLL(None)
@@ -106,21 +106,21 @@ class CommandLineTest(unittest.TestCase):
         self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
 
     def refuse_all(self, status, cases, *common, source=None):
-        """Tests that each of `cases`, pairs of a list of options and a sentence, is refused with this status."""
+        """Tests that runs are refused with this status. cases: pairs of a run's options and the sentence that its error must match."""
         for options, sentence in cases:
             with self.subTest(options):
                 self.refuse(self.extract(*common, *options, source=source), status, sentence)
 
     def write_rising_steps(self, count, up, step=0.25, points=None, **arrays):
-        """Writes step_0.vtp, ... and steps.pvd, which lists these files. The points (by default the block's) rise by `up` from step to
-        step."""
+        """Writes step_0.vtp, ... and steps.pvd, which lists these files. The points (by default self.points) rise by `up` from step
+        to step."""
         points, arrays = points or self.points, {**self.arrays, **arrays}
         for i in range(count):
             files.write_vtp(self.directory / f"step_{i}.vtp", [(x, y, z + up * i) for x, y, z in points], arrays)
         files.write_pvd(self.directory / "steps.pvd", [(step * i, f"step_{i}.vtp") for i in range(count)])
 
     def chosen(self, keep):
-        """Returns the points and the arrays of the particles for whose number keep() is true."""
+        """Returns the points and the arrays of the particles i for which keep(i) is true."""
         picked = list(filter(keep, range(len(self.points))))
         return [self.points[i] for i in picked], {name: [values[i] for i in picked] for name, values in self.arrays.items()}
 
@@ -142,8 +142,8 @@ class CommandLineTest(unittest.TestCase):
 
 
 def main(display=False):
-    """Runs the tests of a file that is called as TEST.py PROGRAM PRELOAD [unittest arguments]. display: starts one display for all
-    pictures."""
+    """Runs the tests of a file that is called as TEST.py PROGRAM PRELOAD [unittest arguments]. display: whether to start a
+    display for all pictures, if there is none."""
     if display and not os.environ.get("DISPLAY"):
         os.execv(WITH_DISPLAY, [WITH_DISPLAY, sys.executable, *sys.argv])
     CommandLineTest.program = os.path.abspath(sys.argv.pop(1))

@@ -4,12 +4,12 @@
 // A library for LD_PRELOAD that causes faults which tests cannot cause otherwise: system calls that
 // fail or take long, a library that takes a signal for itself, and an XML library that fails.
 //
-//   MCOR_FAILING_CALL=fsync|close|rename  this call fails if the file's path begins with MCOR_FAILING_FOLDER
-//   MCOR_RENAME_SECONDS=N                 a rename to such a path takes N seconds
+//   MCOR_FAILING_CALL=fsync|close|rename  fails in MCOR_FAILING_FOLDER; fsync and close: on hidden files
+//   MCOR_RENAME_SECONDS=N                 a rename to a path in MCOR_FAILING_FOLDER takes N seconds
 //   MCOR_TAKES_HANGUPS=1                  SIGHUP does nothing any more, as with some MPIs' UCX
 //   MCOR_READER=abort|recursion|fault     the XML library does this when VTK asks for a parser
 //   MCOR_READER_CALL=N                    only the Nth and later parsers do so (default 1)
-//   MCOR_DRIVER=abort                     crashes as soon as it is loaded as an OpenCL driver
+//   MCOR_DRIVER=abort                     a process that loads this OpenCL driver aborts
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -171,7 +171,7 @@ def all_forms(points, arrays):
 
 
 def write_gadget(path, points, arrays, chosen, order="<", named=False, count=1):
-    """Writes one of the `count` files of a GADGET snapshot: the gas particles `chosen` (numbers), and three stars. named: in format 2."""
+    """Writes one of the `count` files of a GADGET snapshot: the gas particles `chosen` (numbers), and three stars. named: write format 2."""
     def record(data):
         return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
 

@@ -45,7 +45,7 @@ def read_png(path):
 
 
 class Usage(CommandLineTest):
-    """Tests wrong usage, which has exit status 2."""
+    """Tests help, modes and the exit status 2 of wrong usage."""
 
     def test_help(self):
         """--help lists the usual options, --help all lists every option, and --help MODE lists the options that act in this mode
@@ -86,7 +86,7 @@ class Usage(CommandLineTest):
             self.refuse(self.run_program(*arguments), 2, sentence)
 
     def test_options_that_do_not_fit(self):
-        """Options that do not fit together are refused. test_modes.py tests the rules in Options.def; here are all other rules."""
+        """Options that do not fit together are refused. test_modes.py tests the rules in Options.def; this test has others."""
         free = ["--free-surface"]
         self.refuse_all(2, [
             *(([*how, "--derive", "Velocity", *more], "what --derive makes is neither the --scalar nor among")
@@ -219,8 +219,8 @@ class BadData(CommandLineTest):
         self.assertEqual(list(temporary.iterdir()), [])
 
     def test_no_driver(self):
-        """With OCL_ICD_VENDORS set to no folder, Debian's ICD loader finds no driver. The built-in device needs neither a driver nor a
-        home."""
+        """If OCL_ICD_VENDORS names no folder, Debian's ICD loader finds no driver. The built-in device needs neither a driver nor a
+        home directory."""
         environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere"), "HOME": "/nonexistent"}
         environment.pop("MCOR_DEVICE", None)
         self.refuse_with(says("NO_KERNELS", "--precision single"), *ISO, "--precision", "double", env=environment)
@@ -366,7 +366,7 @@ class Options(CommandLineTest):
         self.assertNotIn("Vorticity", self.output.read_text())
 
     def write_points(self):
-        """Writes five points on the x axis, two of which lie outside the particles, in several kinds of files."""
+        """Writes files of five points on the x axis. In points.vtp and points.vtu one point lies outside the particles."""
         xs = [-5.0, 0.0, 0.1, 0.2, 0.3]
         files.write_vtp(self.directory / "points.vtp", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
         files.write_vtu(self.directory / "points.vtu", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
@@ -569,7 +569,7 @@ class Options(CommandLineTest):
         self.assertEqual(self.succeed(*ISO, "--device", found["device"])["device"], found["device"])
 
     def test_dashes(self):
-        # After -- a file name may begin with a dash, and after = a value may.
+        # A file name may begin with a dash after --; a value may after =, or if it is a number.
         self.run_good("--free-surface", "--stats=-s.json", "--", self.input, "-o.vtp")
         json.loads((self.directory / "-s.json").read_text())
         self.assertTrue((self.directory / "-o.vtp").exists())
@@ -600,8 +600,8 @@ class Picture(CommandLineTest):
                 self.assertTrue(drawn[0] < 60 or columns[0] < 60, (drawn[0], columns[0]))
 
     def test_colors(self):
-        """With --color-by, or with several iso values, a picture has many colours. With --color-by it also has a colour bar. A plain
-        surface has shades of one blue."""
+        """With --color-by, or with several iso values, a picture has many colours and a colour bar. A plain surface has shades of one
+        blue."""
         def hues(rows, columns):
             return {(r > b, g > b, g > r) for row in rows for r, g, b in row[columns] if max(r, g, b) - min(r, g, b) > 60}
         plain = self.picture("s.vtp", *ISO)[2]

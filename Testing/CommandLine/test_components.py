@@ -37,8 +37,8 @@ class Components(CommandLineTest):
         self.assertEqual([large["parent"], large["closed"], small["closed"]], ["-1", "1", "1"])
         for row, side in ((large, 1.0), (small, 0.5)):
             self.assertAlmostEqual(float(row["volume"]), side ** 3, delta=0.1 * side ** 2)
-        # The 8 particles at corners are not counted, because less than half of the space around them is filled, so they
-        # lie outside the surface.
+        # The 8 particles at the corners of each block are not counted. They lie outside the surface, because less than
+        # half of the space around them is filled.
         self.assertEqual([large["particles"], small["particles"]], ["992", "117"])
         self.assertAlmostEqual(float(large["mass"]), 992, delta=1e-6)
         self.assertEqual([round(float(small[v]), 9) for v in ("vx", "vy", "vz")], [4, 5, 6])
@@ -110,7 +110,7 @@ class Components(CommandLineTest):
         self.assertEqual(second["between"], second["volume"])
 
     def test_period(self):
-        """A block that crosses a side of the period counts as one piece."""
+        """A block that crosses a side of the periodic box counts as one piece."""
         files.write_vtp(self.input, [((x + 1.5) % 2, y, z) for x, y, z in self.points], self.arrays)
         block, = self.pieces("--periodic", "0,2,0,0,0,0")
         self.assertEqual((block["closed"], block["particles"]), ("1", "992"))

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests damaged files, over which VTK's readers may crash: test_damaged_files.py PROGRAM PRELOAD.
+"""Tests damaged files, at which VTK's readers may crash: test_damaged_files.py PROGRAM PRELOAD.
 
 MCOR_MUTATIONS=N in the environment tries N damaged files (default 150), MCOR_FIRST_MUTATION=K begins
-at the Kth. A file that fails is the same in every run.
+with file K (default 0). File K is the same in every run.
 """
 import os
 import random
@@ -114,7 +114,7 @@ class DamagedFiles(CommandLineTest):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 
     def test_crash_of_the_reader(self):
-        """The program survives any crash in VTK's XML library. Here a library that aborts, faults or recurses replaces VTK's."""
+        """If VTK's XML library crashes, the program says so and ends. Here a library that aborts, faults or recurses replaces VTK's."""
         for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
                             ("recursion", "Segmentation fault")):
             with self.subTest(reader):

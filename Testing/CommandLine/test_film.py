@@ -21,7 +21,7 @@ class Film(CommandLineTest):
         self.film = self.directory / "film.pvd"
 
     def write_steps(self, count, step=0.1, **changes):
-        """Writes drop_000.vtp, ... and steps.pvd, which lists these files at the times 0, `step`, ..."""
+        """Writes drop_000.vtp, ... and steps.pvd, which lists these files at the times 0, `step`, .... Returns the files' paths."""
         entries = []
         for i in range(count):
             path = self.directory / f"drop_{i:03}.vtp"

@@ -92,7 +92,7 @@ class Formats(CommandLineTest):
         arrays that are left out."""
         points = self.read_ply("--color-by", "Velocity", "--color-range", "0.46,0.7", "--attributes", "Velocity", "--output-precision", "single")
         self.assertGreater(set(points[0]), {"red", "green", "blue"})
-        # The speed is nearly the distance from the centre, and the green of the colours grows with it.
+        # The speed is nearly the distance from the centre, and the colours' green grows with the speed.
         speeds = sorted((p["x"] ** 2 + p["y"] ** 2 + p["z"] ** 2, p["green"]) for p in points)
         self.assertLess(speeds[0][1], 100)
         self.assertEqual(speeds[-1][1], 247)  # Values beyond the range have the last colour.
@@ -114,7 +114,7 @@ class Formats(CommandLineTest):
     # Inputs
 
     def write_pieces(self, kind, write, ghosts=False):
-        """Writes particles.p<kind> with two pieces and an empty one."""
+        """Writes particles.p<kind> and its three pieces, the last one empty. ghosts: the first has ghosts, too. Returns the paths."""
         pieces = []
         for i, numbers in enumerate((range(0, 600 if ghosts else 500), range(500, 1000), [])):
             path = self.directory / f"piece{i}.{kind}"
@@ -175,8 +175,8 @@ class Formats(CommandLineTest):
         self.refuse(self.extract("--free-surface", source=path), 1, "it lists no pieces")
 
     def test_gadget(self):
-        """Tests GADGET's two binary formats in both byte orders. Several files are one snapshot. Only gas is read, and h is half of
-        GADGET's."""
+        """Tests GADGET's two binary formats in both byte orders. Several files are one snapshot. Only gas is read, and h is half of the
+        length in GADGET's file."""
         points, arrays = files.lattice(4)
         files.write_vtp(self.input, points, {name: arrays[name] for name in ("SmoothingLength", "Mass", "Density")})
         self.succeed("--free-surface", "--no-attributes")

@@ -297,11 +297,11 @@ class Flux(Meter):
 
 
 class Volumes(CommandLineTest):
-    """Tests from what volumes are computed: with right volumes, the surface of a block of 10 x 10 x 10 particles around the origin is
-    half a spacing beyond the particles."""
+    """Tests what gives the particles' volumes. With right volumes, the surface of a block of 10 x 10 x 10 particles around the origin
+    is half a spacing beyond the particles."""
 
     def level(self, *options, arrays=()):
-        """Returns the level, in spacings above the uppermost particles, and what the program tells about volumes."""
+        """Returns the level, in spacings above the uppermost particles, and what the program prints."""
         files.write_vtp(self.input, self.points, {name: self.arrays[name] for name in arrays})
         table = self.directory / "levels.csv"
         result = self.run_good(self.input, table, "--gauge", "up=0.02,0,-.1:0.02,0,1", *options, says=".*")
@@ -309,7 +309,7 @@ class Volumes(CommandLineTest):
         return float(row["z"]) / DX - 4.5, result.stdout
 
     def test_still_water(self):
-        """The level is the same whichever arrays or options give the volumes, and the program tells which."""
+        """The level is the same whichever arrays or options give the volumes. The program tells what it used."""
         for options, arrays, told in (
                 (("--smoothing-length", "0.13"), (), "computed from the positions"),
                 (("--smoothing-length", "0.13"), ("Mass",), "array Mass / density summed from it"),

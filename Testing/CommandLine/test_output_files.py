@@ -37,8 +37,8 @@ class OutputFiles(CommandLineTest):
     # ---- Outputs that are not regular files ----
 
     def device(self, name, minor):
-        """Returns a device file that the test makes for itself, if the user may make one: a fault of the program would destroy the
-        machine's own file."""
+        """Returns a device file. If the user may make device files, the test makes its own, because a fault of the program would destroy
+        the machine's file."""
         path = self.directory / name
         try:
             os.mknod(path, stat.S_IFCHR | 0o666, os.makedev(1, minor))
@@ -256,8 +256,8 @@ class OutputFiles(CommandLineTest):
     # ---- Whole or untouched ----
 
     def test_what_may_not_be_written(self):
-        """A normal user names an output file that may not be written. The file is not replaced, and the run fails before
-        it computes."""
+        """A user without root's rights names an output file that is read-only, or lies in a read-only folder. The run fails,
+        and the file stays as it was."""
         self.output.write_text("old")
         self.output.chmod(0o444)
         refused = self.extract(*FREE, preexec_fn=drop_privileges)
@@ -291,7 +291,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(self.extract(*FREE, source="a/" * 3000 + "a.vtp"), 1, "File name too long")
 
     def test_full_disk(self):
-        """Runs the program on a full disk: a file system of `pages` pages, one of which holds an older output."""
+        """Writes an output on a disk that is too small: a file system of `pages` pages, one of which holds an older output."""
         script = """mount -t tmpfs -o size=$1 none full || exit 77
             echo old >full/$2; shift 2; "$@"; status=$?; ls -A full; cat full/*; exit $status"""
         unshare = ["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else [])

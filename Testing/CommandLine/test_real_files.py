@@ -256,7 +256,7 @@ class RealFiles(CommandLineTest):
 
     def test_csv(self):
         """Columns of a table become vectors and arrays of whole numbers, which may be contoured and are carried to the surface.
-        wheel.tables compares what is read, and refused, with Python's reader."""
+        The test wheel.tables compares the program with Python's reader."""
         paraview = "\n".join(['"Density","Vel:0","Vel:1","Vel:2","Points:0","Points:1","Points:2","Point ID"'] + [
             f"1000,{p[0]},{2 * p[1]},0,{p[0]},{p[1]},{p[2]},{i}" for i, p in enumerate(block((6, 6, 6)))])
         file = self.check_table("paraview.csv", paraview)

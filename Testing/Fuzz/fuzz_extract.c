@@ -64,8 +64,8 @@ static void fuzz_particles(fuzz_bytes* bytes, fuzz_call* call)
   in->solid = kind & 0x80 ? solid : NULL;
 }
 
-/* Leaves out volume, mass, density or attributes, lets solids be ignored, and takes a component of the
- * positions as the scalar, as the bits of `rules` say. */
+/* The bits of `rules` say whether the call has volumes, masses, densities and attributes, ignores
+ * solids, and takes a component of the positions, or their length, as its scalar. */
 static void fuzz_parts(unsigned rules, fuzz_call* call)
 {
   const mcor_array none = { 0 };
@@ -312,8 +312,8 @@ static void fuzz_compare(const fuzz_call* call)
   mcor_free_surface(&fresh);
 }
 
-/* Makes a call that must fail, with the same version numbers of arrays as `call`. `call` must not
- * reuse data of the failed call. */
+/* Makes a call that must fail, with the same version numbers of arrays as `call`. A later run of
+ * `call` then shows whether it reuses data of the failed call. */
 static void fuzz_fail_first(const fuzz_call* call)
 {
   fuzz_call failing = *call;

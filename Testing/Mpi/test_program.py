@@ -104,7 +104,7 @@ class Program(unittest.TestCase):
         return self.path("plane.vtp")
 
     def check_same(self, name, particles, pieces, *how):
-        """Fails unless processes that read `pieces` files (0: one) write the same bytes as one process. Returns both runs."""
+        """Fails unless processes write the same bytes as one process. pieces: number of files that they read; 0: one. Returns both runs."""
         source = write_pieces(particles, self.folder.name, pieces) if pieces else particles
         alone = self.good(self.run_alone(particles, self.path("alone_" + name), *how))
         done = self.good(self.run_ranks(source, self.path(name), *how))
@@ -125,8 +125,8 @@ class Program(unittest.TestCase):
         self.check_point_data(alone, ranks)
 
     def test_same_file(self):
-        """Compares surfaces including the order of points and triangles: trimmed, with two iso values, and with a period in a box. The first
-        process reads the files of walls. Walls here lie at places of fluid particles."""
+        """Compares surfaces including the order of points and triangles: trimmed, with two iso values, periods, boxes, caps and walls. The
+        first process reads the files of walls. Walls here lie at places of fluid particles."""
         write_pieces(PARTICLES, self.folder.name, 4)
         walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
         trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]

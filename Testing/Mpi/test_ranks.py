@@ -260,7 +260,7 @@ def compare_told(whole, all_told):
 
 
 def check_surface(number, name, file, settings):
-    """Tests one case of surfaces. Returns what differs on rank 0, and nothing on other ranks."""
+    """Tests one case of surfaces. On rank 0 it returns what differs on any rank, on other ranks nothing."""
     particles, problems = make_particles(file), []
     whole, told = extract(settings, particles, None) if RANK == 0 else (None, None)
     for way in ways_of(number):
@@ -322,7 +322,7 @@ def sample(kind, settings, particles, points, controller):
 
 
 def check_sample(number, name, file, constant, kind, settings):
-    """Tests one case of samples. Returns what differs on any rank."""
+    """Tests one case of samples. Returns what differs on this rank."""
     particles = read(os.path.join(FOLDER, file + ".vtp"))
     add(particles, **{INDEX: np.arange(particles.GetNumberOfPoints())})
     if constant is not None:

@@ -37,8 +37,8 @@ class TestPlaces(unittest.TestCase):
         self.assertAlmostEqual(gauge.GetNextBounds()[5], 2.5)
 
     def test_densest(self):
-        """The default line of a gauge goes through the pool in a corner, not through the air in the middle of all
-        particles, nor through walls."""
+        """The default line of a gauge goes through the densest fluid: along x and y through the pool, along z through the
+        tower in a corner, not through air or walls."""
         pool, tower = lattice(40, 40, 4), lattice(4, 4, 20) + [3.6, 0, 0]
         walls = numpy.concatenate([lattice(4, 4, 60)] * 9) + [0, 3.6, 0]
         points = numpy.concatenate([pool, tower, walls])
@@ -112,7 +112,7 @@ class TestColours(unittest.TestCase):
         return {name: (float(low), float(high)) for low, high, name in lines}
 
     def test_ranges(self):
-        """The ranges of colours are not widened by a fast drop, a sharp edge, or walls."""
+        """The ranges of colours are not widened by a hot drop, a sharp edge, or walls."""
         water, drop = lattice(20, 20, 20), lattice(2, 2, 2) + [0, 0, 5]
         heat = numpy.concatenate([water[:, 0], numpy.linspace(400, 600, 8)])
         particles = block(numpy.concatenate([water, drop]), Heat=heat)
@@ -161,7 +161,7 @@ class TestForgotten(unittest.TestCase):
         self.assertRegex(told[0], "SPH Contour")
 
     def test_smoothing_length(self):
-        """The message about a missing smoothing length begins with the remedy, in the words of the panel."""
+        """The message about a missing smoothing length names the remedy in the words of the panel."""
         bare = particles_of(lattice(10, 10, 10))
         surface = vtkMarchingCorrectors()
         _, told = run(surface, bare, FreeSurface=1)

@@ -131,7 +131,7 @@ class TestApart(unittest.TestCase):
 
 class TestTogether(unittest.TestCase):
     def test_one_set(self):
-        """If blocks are one set, in any order and beside empty ones, the surface equals that of the one set to the last bit. An array that one
+        """Blocks that are one set, in any order and beside empty blocks, give the bits that the undivided set gives. An array that one
         block lacks is left out. The joined set is kept as long as the blocks stay the same."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
@@ -162,7 +162,7 @@ class TestTogether(unittest.TestCase):
         self.assertFalse(surface.GetPointData().HasArray("Pair"))
 
     def test_walls(self):
-        """One block has a name of walls, and lacks the scalar. If the filter detects the fluid, this block counts as walls, else as fluid."""
+        """One block has a name that means walls, and lacks the scalar. If the filter detects the fluid, this block counts as walls, else as fluid."""
         data = cube()
         wall = points_of(data)[:, 2] < -0.45
         walls = take(data, wall)

@@ -210,7 +210,7 @@ class TestArrays(FilterTest):
         extract = sphere(particles)
 
         def extracted(scalar, **settings):
-            """Returns the surface, the name of the array that holds the iso value, and all names."""
+            """Returns the surface, the names of the arrays that hold the iso value at all points, and all names."""
             surface = self.good(extract, InputArrayToProcess=(0, 0, 0, POINTS, scalar), **settings)
             data = surface.GetPointData()
             names = [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]

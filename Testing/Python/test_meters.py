@@ -40,7 +40,7 @@ def timed(data):
 
 class MeterTest(unittest.TestCase):
     def measured(self, meter, data=None, **settings):
-        """Returns the rows of a run that prints nothing, by names of columns."""
+        """Returns the rows of a run that prints nothing, each a dictionary from column name to value."""
         table, told = run(meter, data, **settings)
         self.assertEqual((told, meter.GetErrorMessage()), ([], ""))
         return self.rows(table)
@@ -309,8 +309,8 @@ class TestComponents(MeterTest):
                     self.assertTrue(period[2 * a] - 1e-3 < row[axis] < period[2 * a + 1] + 1e-3)
 
     def test_caps(self):
-        """Caps end pieces at the sides of a period. The pieces of a ball together hold as much as the ball, also if it lies outside the
-        period's bounds."""
+        """Caps end pieces at the sides of a periodic box. The pieces of a ball together hold as much as the ball, also if the ball lies
+        outside the box."""
         def wanted(way):
             return numpy.linalg.norm(way, axis=1) < 0.65
 

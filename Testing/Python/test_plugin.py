@@ -146,7 +146,7 @@ def triangles(source):
 
 
 def check_undo(extract):
-    """Each change of a property can be undone and redone."""
+    """Several changes of properties can be undone and redone in one step."""
     stack = servermanager.vtkSMUndoStack()
     builder = servermanager.vtkSMUndoStackBuilder()
     builder.SetUndoStack(stack)

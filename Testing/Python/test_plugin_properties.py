@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every property of every filter is restored by a trace and by a state, whatever its value. Runs in pvpython and computes nothing, because many of
-the changed values make no sense together."""
+"""A trace and a state restore every property, also changed ones, of all filters but SPH Projection. Runs in pvpython and computes nothing, because
+many of the changed values make no sense together."""
 import os
 import pathlib
 import re
@@ -60,7 +60,7 @@ def change(found):
 
 
 def choose_all(make):
-    """Makes the filter with every property changed, and returns the trace."""
+    """Makes the filter and changes every property. Returns the filter, the trace and the new values."""
     smtrace.start_trace()
     proxy = make("traced")
     before = values_of(proxy)

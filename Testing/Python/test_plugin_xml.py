@@ -14,11 +14,11 @@ FILTERS = ("vtkMarchingCorrectors", "vtkSPHComponents", "vtkSPHDerivatives", "vt
            "vtkSPHProjection", "vtkSPHResample", "vtkSPHTemporalInterpolator")
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 NO_NAMES = ("(automatic)", "(none)", "(density)")  # These texts stand for an empty array name.
-# These setters take more or less than one value.
+# scalars() leaves out these setters: they do not set one value, or their property has no default.
 NOT_SCALAR = ("SetInputArrayToProcess", "SetValue", "AddExcludedArray", "SetPanelBoxPosition", "SetPanelBoxLength",
               "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory", "SetOrigin", "SetNormal", "SetRadius", "SetPoint1",
               "SetPoint2", "SetBounds", "SetDimensions", "SetDirection", "SetBox")
-# Defaults of the filters that differ from the plugin's, because a panel shows what was found.
+# {property: the filters' default}, where the plugin has another default.
 DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
 # Setters without a property, and why.
 NOT_IN_XML = {

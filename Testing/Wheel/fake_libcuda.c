@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Replaces CUDA's driver in tests without a card. Has the functions that the Python package calls;
- * the host's memory stands for the device's. Counts copies and locked blocks, and refuses what a
- * driver refuses: calls without a context, and copies into memory that is not locked. */
+/* This library replaces CUDA's driver in tests without a card. It has the functions that the Python
+ * package calls, with the host's memory in place of the device's. It counts copies and locked
+ * blocks, and refuses what a driver refuses: calls without a context, and copies to unlocked memory. */
 
 #include <stdint.h>
 #include <stdlib.h>

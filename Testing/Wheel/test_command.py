@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests python -m marchingcorrectors surface, gauge, slice, line: they give what the functions give, and write what the program writes."""
+"""Tests python -m marchingcorrectors surface, gauge, slice, line: they write what the program writes, and refuse wrong options."""
 import csv
 import os
 import subprocess

@@ -20,8 +20,8 @@ from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, wr
 
 
 def write_vtk(path, kind="", version=0):
-    """Writes a file by VTK. With a version: a .vtk file of an unstructured grid, as SPlisHSPlasH does; kind is "text", or "" for binary.
-    With a kind alone: a .vtp file with this compressor; data are base64 for LZ4, else raw bytes. Else the path tells the format."""
+    """Writes a file by VTK. A version makes it a .vtk file of an unstructured grid, as SPlisHSPlasH's are: text if kind is "text", else binary.
+    A kind alone is the compressor of a .vtp file, whose data are base64 for LZ4, else raw bytes. With neither, path's ending counts."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     if version:

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests which device is found: the built-in one without any driver, program or home; a driver's device by name. Each case runs in its own process.
-The class Whole needs a wheel with all kernels. The class Arrays tests arrays on a CUDA device, as CuPy, PyTorch and others give them. A fake
-(fake_libcuda.c), which uses the host's memory, replaces CUDA's driver, so Arrays tests what the package asks of a driver, not a card."""
+"""Tests which device is found: the built-in one without any driver, program or home directory; a driver's device by its name. Each case runs in its own
+process. The class Whole needs a wheel with all kernels. The class Arrays tests arrays on a CUDA device, as CuPy, PyTorch and others give them.
+A fake (fake_libcuda.c), which uses the host's memory, replaces CUDA's driver, so Arrays tests what the package asks of a driver, not a card."""
 import ctypes
 import gc
 import os

@@ -135,7 +135,7 @@ class Case(unittest.TestCase):
 
     def fuzz(self, makers, least, tries, readings=({},), in_numbers=False):
         """Reads each file with its end cut off, with bits flipped in its head, or with bits flipped anywhere (in_numbers: with numbers in
-        its head replaced). Each reading gives particles, or a FileError of one line. More than `least` readings must give a FileError.
+        its head replaced). Each reading gives particles, or a FileError of one line. More than `least` files must give a FileError.
         makers: {name: function(path, random)}. tries: damaged files of each maker. readings: keywords of io.read() for each reading."""
         random, refused = np.random.default_rng(44), 0
         for name, make in makers.items():

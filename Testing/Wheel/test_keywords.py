@@ -23,7 +23,7 @@ ARRAYS = {"Radius": np.linalg.norm(X, axis=1), "Noise": np.sin(12.9898 * np.aran
 ARRAYS["Blob"] = 1e-6 + 0.0016 * np.abs(ARRAYS["Noise"])
 LINES, SECTIONS = {"a": ((-1, 0.01, 0), (1, 0.01, 0))}, {"a": ("disc", (0.17, 0, 0), (1, 0, 0), 0.6)}
 POINTS = np.stack([0.04 * np.arange(20) - 0.3, 0.02 + 0 * np.arange(20), 0.03 + 0 * np.arange(20)], axis=1)
-# The positional arguments of each function, with names in place of arrays.
+# What each function needs; particles' arrays are given by their names.
 CALLS = {"isosurface": {"scalar": "Radius", "iso": 0.3}, "free_surface": {}, "probe": {"points": POINTS, "attributes": ["Radius"]}, "derivatives": {"attributes": ["Velocity"]},
          "widening": {}, "gauge": {"lines": LINES}, "flux": {"velocity": "Velocity", "sections": SECTIONS}, "project": {"resolution": 20}}
 NOISE = {"scalar": "Noise", "iso": 0.1, "cube_size_factor": 1.0}

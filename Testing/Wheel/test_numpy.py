@@ -156,7 +156,7 @@ class Results(unittest.TestCase):
                 mc.probe(POSITIONS, POSITIONS[:5], outputs=outputs, smoothing_length=H, attributes={"d": DISTANCE})
 
     def test_widening(self):
-        """Lengths multiplied by the factors of widening(), with the volumes of the original lengths, make the same
+        """Smoothing lengths multiplied by the factors of widening(), with the volumes of the original lengths, make the same
         surface as `widen` if cubes have one size."""
         for given in ({}, {"volume": 1e-3}):
             words = {"cube_size": H / 2, **given}

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests marchingcorrectors.io with tables, .xyz, dumps of LAMMPS, GADGET's binary formats and films in .vtkhdf. Random files are compared with
-NumPy's reading of the same bytes. Damaged files must give an error message."""
+"""Tests marchingcorrectors.io with tables and other formats, most of them text. What is read from random files is compared with NumPy's reading, with
+the numbers written, or with what the program reads. Damaged files must give an error message."""
 import gzip
 import os
 import re

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests PyVista's accessor, and compares the filter with the functions. PyVista and VTK come from PyPI."""
+"""Tests PyVista's accessor, and that the wheel's filter has the C++ filter's methods and defaults. PyVista and VTK come from PyPI."""
 import os
 import re
 import unittest

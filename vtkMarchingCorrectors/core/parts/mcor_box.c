@@ -10,9 +10,9 @@
  * vertices), the border that the node threshold leaves, and normals from triangles depend on the
  * ring. Its triangles are removed from the surface at the very end, see mcor_triangle_cell.c.
  *
- * Beyond the ring's nodes, sums lack particles and mean nothing. The bounds found for cubes that
- * extend beyond the ring are too low there, but hold at the ring's nodes. Cubes and bricks
- * beyond the ring are made void, so that they are not examined.
+ * Beyond the ring's nodes, sums lack particles and mean nothing. Bounds of the field in a cube that
+ * extends beyond the ring hold only at the ring's nodes. Cubes and bricks beyond the ring are made
+ * void, so that they are not examined.
  *
  * A probe whose search grid is not kept owns the cells around its points. */
 
@@ -64,8 +64,8 @@ void mcor_move_period(mcor_options* options)
 
 /* The same margin with adaptive cubes, in cells of the particle's level; a particle does not reach
  * larger cells. A cell of the ring, or a cell whose centre is in the box, has nodes at most two
- * cells away from the box. Trimming may move a vertex 3/4 of a cell further, and then into a cell
- * half as large. For a wider ring see mcor_level_ring. */
+ * cells away from the box. Trimming may move a vertex 3/4 of a cell further, into a cell half as
+ * large; 2.75 cells are 5.5 of these smaller cells. For a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
 /* For a probe, the field is evaluated up to this distance, in cubes, from the cells around the
@@ -278,7 +278,7 @@ double mcor_reach_around(
   const double volumes = computes_volumes ? reach * (1 + 1 / options->h_scale) + margin : 0;
   /* The particle nearest to a vertex may not reach the box, but it is nearer to the vertex than the
    * particles that reach the box. One particle of a pair may not reach the box either, but it is
-   * within a smoothing length of the particle that reaches it. */
+   * within a smoothing length of the other particle. */
   const bool others = options->outputs & MCOR_OUT_NEAREST_PARTICLE || mcor_wants_pairs(options);
   const double nearest = others ? reach + margin : 0;
   /* A widening factor depends on sums with widened supports, at the particle and at the particles

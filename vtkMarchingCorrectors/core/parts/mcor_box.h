@@ -42,10 +42,10 @@ typedef struct mcor_images
 /* Returns how far from the box, in cubes, a particle is still needed. length: its smoothing length,
  * unit L; level: its level of adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
-/* Finds the cells [first, last) where particles need sums, for mcor_derive and mcor_widen. Returns
- * false if all particles need sums. Only one image of each particle counts: the image in the
- * period; on the period's sides, the image on the lower side or, if the box begins above the lower
- * side, the image on the upper side. */
+/* Finds the cells [first, last) at whose particles mcor_derive and mcor_widen evaluate sums.
+ * Returns false if they evaluate sums at all particles. Only one image of each particle counts: the
+ * image in the period; on the period's sides, the image on the lower side or, if the box begins
+ * above the lower side, the image on the upper side. */
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
@@ -84,7 +84,7 @@ static inline int mcor_level_ring(int ring)
 }
 
 /* Removes cells that are neither in the box nor in the ring around it from the masks `cells` of
- * marched bricks. Beyond the ring, the device lacks particles, or has images of particles. */
+ * marched bricks. Beyond the ring, particles are missing or, with a period, the surface repeats. */
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* mcor_find_owned finds the owned cells among `cells`; mcor_count_cells counts the owned cells that
  * are also in `within`. */

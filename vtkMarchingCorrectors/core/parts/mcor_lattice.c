@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The virtual grid [III-B], and periodic boxes: the grid covers one period, which images of the
- * particles also reach, see mcor_box.c. */
+/* The virtual grid [III-B]. With periods, the grid covers one period and what images of the
+ * particles may reach around it, see mcor_box.c. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"
@@ -31,7 +31,7 @@
 
 #define MCOR_FARTHEST 1e15 /* in cubes from the origin; nodes are whole numbers up to here */
 
-/* The most periods over which a particle may reach; farther images would be too many. */
+/* A particle may reach over at most this many periods; more would need too many images. */
 #define MCOR_MOST_PERIODS 2
 
 /* Returns the fewest cubes along `axis`, from `least` to `most`, for which all periods are whole
@@ -115,8 +115,8 @@ static mcor_status mcor_check_digits(mcor_context* context, double low, double h
   return MCOR_OK;
 }
 
-/* Finds the cubes' edges, and the lengths of the periods in cells. May lower *top, the highest
- * level. */
+/* Finds the cubes' edges, the lengths of the periods in cells, and the bounds along periods
+ * (measure.low, high), which hold the needed images. May lower *top, the highest level. */
 static mcor_status mcor_fit_period(
   mcor_context* context, const mcor_options* options, double cube, int* top)
 {
@@ -178,7 +178,7 @@ static mcor_status mcor_fit_period(
 
 /* Chooses how many fixed-point units long each edge is. A unit must have the same length along all
  * axes, so these whole numbers must have the ratios of the edges. For the longest edge, tries at
- * most MCOR_STEP_TRIES numbers: from the units of a cube down to 1 - 1 / MCOR_STEP_RANGE of them.
+ * most MCOR_STEP_TRIES numbers: from n, the units of a cube, down to (1 - 1 / MCOR_STEP_RANGE) n.
  * Takes the number for which rounding changes the ratios least, by about 1e-8. */
 static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
@@ -293,7 +293,7 @@ mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* opti
   MCOR_FAIL_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
     MCOR_SAY(GRID_TOO_LONG_AT_ALL), cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  /* Adaptive cubes use one bit more, because lattices are long if smoothing lengths differ much. */
+  /* In single precision, adaptive cubes use one bit more, because their lattices are often long. */
   const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;
   while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
   {

@@ -32,7 +32,7 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Lists components of those attributes that are finite everywhere. of_surface: lists only
+/* Lists components of the attributes that are finite at all fluid particles. of_surface: lists only
  * components that vary; else, for samples, lists all. not_finite: [attribute_count]; writes what
  * mcor_surface.attribute_not_finite tells. */
 mcor_status mcor_list_components(

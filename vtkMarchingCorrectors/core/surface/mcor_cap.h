@@ -4,7 +4,7 @@
 #define mcor_cap_h
 
 /* Caps close the surface at the sides of a period or box, see mcor_cap_make.c. Filled regions in
- * two dimensions use these nodes and points, too. */
+ * two dimensions use the nodes and points declared here, too. */
 
 #include "mcor_plane.h"
 #include "mcor_table.h"
@@ -87,8 +87,8 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-/* A brick of nodes that particles reach. Its nodes are on a side, or one node further in. Masks
- * have the bits of a brick's nodes. */
+/* A brick with nodes on a side, or one node further in. Its masks have a bit for each node of the
+ * brick, see MCOR_BRICK. */
 typedef struct mcor_cap_brick
 {
   uint64_t key;  /* must be the first member; orders bricks by the side's second axis, then by its
@@ -99,8 +99,8 @@ typedef struct mcor_cap_brick
   int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
   bool is_known; /* marching has evaluated its nodes */
   cl_ulong above, valid;
-  /* Masks, by lowest node. used: the used cells. joined: the side's ambiguous faces whose nodes
-   * above the iso value are joined. */
+  /* Masks in which a cell or face has its lowest node's bit. used: the used cells. joined: the
+   * side's ambiguous faces whose nodes above the iso value are joined. */
   cl_ulong used, joined;
 } mcor_cap_brick;
 
@@ -146,8 +146,9 @@ static inline int64_t mcor_corner_index(const mcor_cap_nodes* nodes, int64_t at,
   return (int64_t)brick * MCOR_SIDE_NODES + (u & 3) + MCOR_BRICK * (v & 3);
 }
 
-/* mcor_cap_points.c. Returns the coordinate, in nodes, of the lower or upper side of the box (with
- * ranks: of the whole box) along an axis if a cap closes this side, else -1. */
+/* mcor_cap_points.c. Returns the coordinate, in nodes, of the lower or upper side along an axis
+ * that a cap closes; -1: none. With MCOR_CAP_BOX this is the side of the box (with ranks: of the
+ * whole box), else the side of the period. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether a cap closes this side of this call's box. */

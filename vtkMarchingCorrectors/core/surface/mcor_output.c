@@ -28,7 +28,7 @@ typedef struct mcor_download
   mcor_context* context;
   double sum_rounding;
   mcor_surface* surface; /* point_count: index of the first new point */
-  /* Views of the mesh's buffers, see mcor_is_output. */
+  /* Views of the mesh's buffers. scanned: see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   void *eigenvalue, *nearest, *curvature, *cuts; /* if the caller wants them */
   void *triangles, *cells;                       /* cells: if mcor_follows_cells */
@@ -310,7 +310,7 @@ static void mcor_deliver_triangles_slice(void* data, int slice, int64_t first, i
   (void)slice;
 }
 
-/* Evaluates at the vertices what the caller wants beside the field. */
+/* Evaluates at the vertices what the caller wants: eigenvalue, curvatures, nearest particle. */
 static mcor_status mcor_evaluate_outputs(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;

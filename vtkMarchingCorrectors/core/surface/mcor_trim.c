@@ -149,8 +149,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
     MCOR_BUFFER(&mesh->cut_edges), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
-  /* Finds where the cut vertices of each level begin. A cut vertex belongs to the level of its
-   * edge's lower vertex, by which cuts are sorted. */
+  /* Finds where the cut vertices of each level begin. A cut vertex has the level of the first
+   * vertex of its edge; cuts are sorted by this vertex. */
   for (int l = 0; l + 1 < context->lattice.levels; ++l)
   {
     int low = 0, high = cut_count;

@@ -753,8 +753,8 @@ extern "C"
   /* Returns about how many cubes (in a plane: squares) of the virtual grid the fluid fills, in the
    * box if there is one. A particle fills (h / 1.3)^3, in a plane (h / 1.3)^2. Returns 0 without
    * fluid, or if the smoothing length is to be estimated but options.cube_size is given, because
-   * the ratio of the two is then not known. least: mcor_least_smoothing_length, the least of all
-   * ranks that share the particles. The sum of the ranks' results is the number for all ranks. */
+   * the ratio of the two is then not known. least: what mcor_least_smoothing_length returns; of
+   * several ranks, the least. The sum of the ranks' results is the number for all ranks. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
   /* Returns a warning that a run of `cells` cells may take long; no message if it will not. */
@@ -794,7 +794,7 @@ extern "C"
     const mcor_options* options, const mcor_surface* surface);
 
   /* Returns a warning if single precision is too coarse for the points of a surface whose largest
-   * coordinate, in magnitude, is `largest`; else no message. Both lengths have one unit. */
+   * coordinate, in magnitude, is `largest`; else no message. Both lengths have the same unit. */
   mcor_message mcor_describe_single_points(double largest, double cube_size);
 /* If blocks are joined to one set of particles, the array of this name marks the particles of
  * blocks whose names tell of walls. */
@@ -842,7 +842,7 @@ extern "C"
     MCOR_GAUGE_STATE_COUNT
   } mcor_gauge_state;
 
-  /* The reading of one line. Lengths are measured from the line's beginning, unit L. */
+  /* The reading of one line. Lengths: unit L. first, last: distances from the line's beginning. */
   typedef struct mcor_gauge_reading
   {
     mcor_gauge_state state;
@@ -871,10 +871,10 @@ extern "C"
    * where the solids' share of the sum exceeds wall_share (0.5 unless it is given; 0: solids play
    * no part). Each line is sampled at a quarter of the smallest (scaled) smoothing length, or more
    * finely where neighbouring samples show that an extremum may cross the level; then crossings are
-   * solved for. lines: [count]. The options of mcor_probe apply, except field; iso_values and
-   * wall_share apply, too. Ranks must have boxes, globals (of mcor_measure_globals with
-   * MCOR_WEIGHT_SUM, level_limit 0 and MCOR_WALL_SHARE_MEASURED, unless a share is given) and the
-   * same lines; each rank gets all readings. *gauges is overwritten. */
+   * solved for. lines: [count]. The options of mcor_probe apply, except field, outputs and
+   * node_threshold; iso_values and wall_share apply, too. Ranks must have boxes, globals (of
+   * mcor_measure_globals with MCOR_WEIGHT_SUM, level_limit 0 and MCOR_WALL_SHARE_MEASURED, unless a
+   * share is given) and the same lines; each rank gets all readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);
@@ -932,10 +932,10 @@ extern "C"
 
   /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
    * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
-   * weight sum is at least the level, as for mcor_gauge. The tolerance of `area` is 2.5e-6 times
-   * the area of the section. The tolerance of volume_flux is this area times the greatest speed; of
-   * mass_flux, times the greatest density, too. Options, globals and ranks are as for mcor_gauge.
-   * *fluxes is overwritten. */
+   * weight sum is at least the level, as for mcor_gauge. The tolerances are 2.5e-6 A for `area`,
+   * 2.5e-6 A v for volume_flux and 2.5e-6 A v rho for mass_flux, with the section's area A, the
+   * greatest speed v and the greatest density rho. Options, globals and ranks are as for
+   * mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -956,7 +956,7 @@ extern "C"
     int resolution; /* pixels along the longer side, 1 to 32768 */
     /* [count], 1 component. The image shows means, sum V B A F / sum V B F. V: volumes; B: weights;
      * A: the scalar; F: the kernel's column integral, averaged over the pixel. If the weights are
-     * masses m, m replaces V B. data NULL: the image shows column integrals. */
+     * the input's masses m, m replaces V B. data NULL: the image shows column integrals. */
     mcor_array weight;
     const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
   } mcor_view;
@@ -977,7 +977,7 @@ extern "C"
    * the most that one particle adds to a pixel. Without a scalar, integrates the density: a pixel
    * then has the mass that falls into it, divided by its area. In two dimensions, the image shows
    * the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and
-   * progress apply; if volumes are computed, all options of mcor_probe apply. The result has the
+   * progress apply; if volumes are computed, the options of mcor_derive apply. The result has the
    * same bits for any order of the particles. Each rank gets the whole image. If volumes are
    * computed or h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and
    * `counted`, so that each particle counts once. *projection is overwritten. */

@@ -126,16 +126,16 @@ extern "C"
     const char* label;  /* the name of the scalar's component; NULL: X, Y, Z or a number */
   } mcor_request;
 
-  /* Made by mcor_find_input; free it with mcor_free_found. Indices are indices of the given arrays;
-   * -1: none. The two indices behind the last given array stand for made[0] and made[1]. */
+  /* The result of mcor_find_input; free it with mcor_free_found. Indices are indices of the given
+   * arrays; -1: none. The two indices behind the last given array stand for made[0] and made[1]. */
   typedef struct mcor_found
   {
     mcor_input input; /* valid until mcor_free_found */
     /* The index of each role's array. For the first four roles, the index is -1 also if the input
      * does not use the array. */
     int which[MCOR_ROLE_COUNT];
-    /* The array or the one value of each role, as the core reads it, also where the input does not
-     * use it. For MCOR_ROLE_FLUID, only the name is set. */
+    /* Each role's array, or its one value, as the core reads them, even if the input does not use
+     * them. For MCOR_ROLE_FLUID, only the name is set. */
     mcor_array views[MCOR_ROLE_COUNT];
     double fluid_value;
     int64_t fluid_count; /* number of fluid particles */
@@ -175,8 +175,8 @@ extern "C"
   void mcor_take_densities(mcor_found* found, const double* densities);
 
   /* Returns the index of the array to show if the user has chosen none: the active array, unless
-   * its mcor_view_priority is -1; else the array with the lowest priority number. -1: no array has
-   * such a number. `ranks` as in mcor_find_input. */
+   * its mcor_view_priority is -1; else the array with the lowest priority that is not -1. Returns
+   * -1 if there is none, or if another rank failed. `ranks` as in mcor_find_input. */
   int mcor_choose_view(const mcor_named* arrays, int count, int active, const mcor_ranks* ranks);
 
   /* Returns the index of the array that has the most usual name of the quantity, among arrays with

@@ -33,8 +33,8 @@
     }                                                                                              \
   } while (0)
 
-/* If `status` is MCOR_OK, makes a call, and sets `status` to the call's result. For functions that
- * must free something before they return. */
+/* If `status` is MCOR_OK, makes a call, and sets `status` to the call's result. It is for functions
+ * that must free something before they return. */
 #define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
 
 /* MCOR_LIST: an array that grows. MCOR_APPEND appends a value; if memory runs out, the calling
@@ -333,9 +333,9 @@ void mcor_release_nodes(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
-/* Marks the cells between the particles of each pair (bricks.seeds). Finds all cells that are
- * reached from marked cells through faces that the surface crosses (bricks.cells, with the marked
- * cells). Evaluates the nodes of all cells that it finds. */
+/* Writes the cells between the particles of each pair to bricks.seeds. Writes these cells, and all
+ * cells reached from them through faces that the surface crosses, to bricks.cells. Evaluates the
+ * nodes of all these cells. */
 mcor_status mcor_find_reached(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);

@@ -102,14 +102,15 @@ extern "C"
       int64_t* all_count);
     void* user;
     /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: only periods
-     * bound the whole surface. Statistics count a vertex that several ranks have on one of them. */
+     * bound the whole surface. A vertex that several ranks have is in one rank's statistics. */
     double whole_box[6];
   };
 
   /* Does what mcor_create_context does, for process or thread number `place`, from 0, of `count`
    * that run side by side on a machine. Unless a number names the device, the processes take turns
-   * among all devices of the same platform and kind. If processes use the same CPU device, each has
-   * some of the processors. Results do not depend on which device or processors a process gets. */
+   * among all devices that have the platform and kind of mcor_create_context's device. If processes
+   * use the same CPU device, each has some of the processors. Results do not depend on which device
+   * or processors a process gets. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
@@ -130,7 +131,7 @@ extern "C"
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
   /* Returns how far from a box all particles are needed, however short their supports are, because
    * the particles that reach the box depend on these neighbours; 0: no neighbours are needed. All
-   * lengths have one unit. computes_volumes: whether the call computes volumes; widest:
+   * lengths have the same unit. computes_volumes: whether the call computes volumes; widest:
    * options.widen for mcor_widen, 0 for other calls; reach: how far a particle that reaches the box
    * may be away from the box, 0 if no particle reaches it; margin: at least two cubes, because
    * particles and the box are rounded. */
@@ -149,14 +150,14 @@ extern "C"
   } mcor_measures;
 
   /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call
-   * mcor_measure_sums for each part, and reduce the members marked 2. numbers: [point_count], the
-   * points' numbers in the whole surface; NULL: their indices. */
+   * mcor_measure_sums for each part, reduce the members marked 2, and call mcor_keep_measures.
+   * numbers: [point_count], the points' numbers in the whole surface; NULL: their indices. */
   void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures);
   void mcor_measure_sums(
     const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures);
   void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics);
 
-  /* Does for mcor_probe and mcor_derive what mcor_measure_globals does for mcor_extract. */
+  /* Does what mcor_measure_globals does, for mcor_probe, mcor_derive and mcor_project. */
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
 

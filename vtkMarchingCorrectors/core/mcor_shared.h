@@ -86,8 +86,8 @@ typedef struct mcor_level
  * nodes that cells of other levels have on the leaf's sides. */
 #define MCOR_OPEN_SIDES 4
 
-/* How many masks a brick has. The EDGE masks mark the brick's lattice edges with a vertex, see
- * mcor_march_count. DECISION masks 0 to 2, by axis of the normal, mark ambiguous faces whose lowest
+/* How many masks a brick has. EDGE masks mark the brick's lattice edges with a vertex, see
+ * mcor_cell.cl. DECISION masks 0 to 2, by axis of the normal, mark ambiguous faces whose lowest
  * node is in the brick and whose nodes above the iso value are joined. Mask 3 marks cells whose
  * samples are all below the iso value; mask 4 marks cells whose samples are all above it. */
 #define MCOR_EDGE_MASKS 9
@@ -116,7 +116,7 @@ typedef struct mcor_rung
 } mcor_rung;
 
 /* A vertex's lattice edge is four ints: x, y, z of the edge's lower node, and level <<
- * MCOR_LEVEL_SHIFT | flag << 2 | axis. */
+ * MCOR_LEVEL_SHIFT | flag << 2 | axis. flag: 1 if a cell around the edge is unused. */
 #define MCOR_LEVEL_SHIFT 8
 
 /* A leaf has a table of the slots (indices in buffers) of all bricks that it may need: 2^3 bricks

@@ -19,7 +19,7 @@
 
 /* [III-B] The virtual grid: world position = (origin + fixed / step) * edge, along each axis.
  * Lengths on the device are in cubes of 2^fix_bits fixed-point units. Edges are a cube long, unless
- * no cube divides all periods: `cube` is then a little longer than any edge, see mcor_fit_steps. */
+ * no cube divides all periods: `cube` is then at least the longest edge, see mcor_fit_steps. */
 typedef struct mcor_lattice
 {
   double cube, edge[3];
@@ -150,7 +150,7 @@ typedef struct mcor_mesh
 
 /* A set of bricks of one level of adaptive cubes. Bricks are in clusters of 4^3, which begin at
  * multiples of 4. clusters: for the key of a cluster's first brick, a mask of the cluster's bricks
- * in the set; bit x + 4 y + 16 z is a brick. */
+ * in the set; brick (x, y, z) of the cluster has bit x + 4 y + 16 z. */
 typedef struct mcor_brick_set
 {
   mcor_table clusters;
@@ -247,7 +247,6 @@ typedef struct mcor_sort_data
   mcor_buffer keys, values, histogram, order, flags;
 } mcor_sort_data;
 
-/* One component of an attribute. */
 typedef struct mcor_component
 {
   int attribute, component;

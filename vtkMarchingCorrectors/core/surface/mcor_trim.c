@@ -69,7 +69,6 @@ double mcor_vertex_threshold(const mcor_context* context)
   return mcor_may_lack_fluid(context) ? threshold : fmax(threshold, mcor_least_fluid(context));
 }
 
-/* Returns the quantity that trimming compares with mcor_trim_threshold. */
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) || mcor_may_lack_fluid(context)

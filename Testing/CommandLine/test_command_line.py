@@ -49,7 +49,7 @@ class Usage(CommandLineTest):
 
     def test_help(self):
         """--help lists the usual options, --help all lists every option, and --help MODE lists the options that act in this mode
-        (test_modes.py compares these lists with what options do). Lines are as long as the terminal is wide."""
+        (test_modes.py compares these lists with what options do). Lines fill the terminal's width."""
         few, everything = (self.run_good("--help", *words).stdout for words in ([], ["all"]))
         self.assertEqual(self.run_program("-h").stdout, few)
         listed = re.findall(r"(?m)^  (--[\w-]+)", few)

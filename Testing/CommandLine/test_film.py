@@ -104,7 +104,7 @@ class Film(CommandLineTest):
         self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "--ids needs --times or --fps; add one, or leave out --ids")
 
     def test_ranges_of_times(self):
-        """A range in --times, FROM:TO:STEP, means all times in it. The number of frames by --fps follows from the times and --slow."""
+        """A range in --times, BEGIN:END:STEP, means the times from BEGIN to END. The number of frames by --fps follows from the times and --slow."""
         paths = self.write_steps(3)
         film = [*paths, self.film, *FREE, "--quiet", "--time-step", "0.1"]
         for options, times in ((["--times", "0:0.2:0.05"], [0, 0.05, 0.1, 0.15, 0.2]), (["--times", "0.2,0:0.1:0.04"], [0, 0.04, 0.08, 0.2]),
@@ -162,7 +162,7 @@ class Film(CommandLineTest):
         self.one_sentence(result, 1, "species.*texts")
 
     def test_period_between_steps(self):
-        """If particles cross a side of the period between two steps, their path is interpolated beyond the side, not
+        """If particles cross a side of the periodic box between two steps, their path is interpolated beyond the side, not
         back through the box."""
         points, arrays = files.lattice(6)
         for i, x in enumerate((0.6, 0.8)):

@@ -113,7 +113,7 @@ def parameters_of(report):
 
 def is_shown(option, value, report, base):
     """Returns whether the report shows the option: a parameter with a name like the option's has changed, to the option's value if this is
-    a number or a word. A number may also replace an array's name. Returns True if the reports have no such parameter, or are equal."""
+    a number or a word. For a number, a changed array name counts, too. Returns True if the reports have no such parameter, or are equal."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
     mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}
@@ -158,7 +158,7 @@ class Modes(CommandLineTest):
 
     def run_once(self, key):
         """Runs the program for a key (inputs, output, options). Returns the exit status, standard error, all that the
-        run writes and prints without seconds, and the report's parameters."""
+        run writes and prints except times, and the report's parameters."""
         inputs, output, options = key
         folder = self.directory / f"run_{len(os.listdir(self.directory))}_{abs(hash(key))}"
         folder.mkdir()

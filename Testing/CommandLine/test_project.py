@@ -18,7 +18,7 @@ class Project(CommandLineTest):
         self.image = self.directory / "surface.vti"  # refuse() looks for files whose names begin like this.
 
     def project(self, *options, source=None):
-        """Returns the name, size, spacing and values of the image."""
+        """Returns the array's name, the size, the spacing and the values of the image."""
         self.run_good(source or self.input, self.image, *options)
         return self.read(self.image)
 

@@ -284,7 +284,7 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
     def test_factors(self):
-        """With --widening, the first process writes all particles in the order of the pieces, with the arrays that one process finds. One
+        """With --widening, the first process writes all particles in the order of the pieces, with the arrays that one process makes. One
         particle is so far away that it is left out."""
         particles = read(PARTICLES)
         particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)

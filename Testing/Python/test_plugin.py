@@ -292,7 +292,7 @@ def check_probe(reader, plane):
 
 
 def check_slices(reader):
-    """With particles and the panel's default places, nothing else has to be chosen."""
+    """SPH Slice, SPH Line and SPH Volume need only particles: the panel's default places fit them."""
     cut = SPHSlice(Input=reader)  # noqa: F821
     data, found = arrays_of(cut)
     points = vtk_to_numpy(data.GetPoints().GetData())

@@ -179,7 +179,7 @@ def check_colours(file):
 
 
 def check_legend(file):
-    """The legend shown is that of the array that gives the colours, though the colours were those of another array before."""
+    """Only the legend of the array that gives the colours is shown, though another array gave the colours before."""
     bars = [{p.get("name"): [e.get("value") for e in p.findall("Element")] for p in bar.findall("Property")}
             for bar in xml.parse(file).findall(".//Proxy[@type='ScalarBarWidgetRepresentation']")]
     titles = [bar["Title"] for bar in bars if bar["Visibility"] == ["1"]]

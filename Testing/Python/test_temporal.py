@@ -193,7 +193,7 @@ class TestTemporal(unittest.TestCase):
         self.assert_points(self.at(film, 0.25, UseVelocities=0), [(0.25, 0, 0), (1, 0, 0)])
 
     def test_time_scale(self):
-        """Two steps have the times 0 and 1 but are 0.1 apart by their velocities. A warning tells of it."""
+        """Two steps have the times 0 and 1 but are 0.1 apart by their velocities. A warning proposes the time scale 0.1."""
         numbered = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1)})
         warning, = self.told(numbered, 0.5)
         self.assertIn("0.1003", warning)  # tan(0.1) / 0.1 times what the velocities say

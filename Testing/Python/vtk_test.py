@@ -154,7 +154,7 @@ def statistic(extract, name):
 
 
 def on_progress(extract, act):
-    """Lets act(extract) be called at each progress event."""
+    """Calls act(extract) at each progress event of later runs. Returns the observer's number."""
     return extract.AddObserver("ProgressEvent", lambda *_: act(extract))
 
 

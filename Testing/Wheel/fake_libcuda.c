@@ -3,7 +3,7 @@
 
 /* This library replaces CUDA's driver in tests without a card. It has the functions that the Python
  * package calls, with the host's memory in place of the device's. It counts copies and locked
- * blocks, and refuses what a driver refuses: calls without a context, and copies to unlocked memory. */
+ * blocks, and refuses what a driver refuses: calls without a context, copies to unlocked memory. */
 
 #include <stdint.h>
 #include <stdlib.h>

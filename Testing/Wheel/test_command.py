@@ -84,7 +84,7 @@ class Command(Case):
         self.assertIn("but this is a surface", self.said)
 
     def test_period_and_curvature(self):
-        """The period comes from the file's field data."""
+        """The period comes from the file's field data. Points and curvatures equal the program's."""
         line = np.arange(12) * 0.1
         data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line[:6]), -1).reshape(-1, 3))
         data.field_data["PeriodicBounds"] = [0, 1.2, 0, 1.2, 0, 0]

@@ -123,10 +123,10 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    /* The paper's seeds, for comparisons: the cells between two particles that are at most an
-     * (unscaled) smoothing length apart, and whose values lie on different sides of the iso value.
-     * Needs cubes of one size, and no box, caps or ranks. With MCOR_WEIGHT_SUM particles have no
-     * values, so seeds are complete. */
+    /* The paper's seeds, for comparisons: the cells between two particles whose values lie on
+     * different sides of the iso value, and whose distance is at most the larger of their
+     * (unscaled) smoothing lengths. Needs cubes of one size, and no box, caps or ranks. With
+     * MCOR_WEIGHT_SUM particles have no values, so seeds are complete. */
     MCOR_PAIRS = 1
   } mcor_seed_mode;
 
@@ -271,12 +271,12 @@ extern "C"
  * the wall share is 0.5, and the surface stays in front of that layer. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
-  /* For surfaces in parts, by several processes or from some of the particles: see mcor_parts.h. */
+  /* These types serve surfaces that are made in parts or by several processes: see mcor_parts.h. */
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
-  /* Arrays that a surface or samples may have besides points and triangles. Each is named after its
-   * member of mcor_surface and mcor_samples. */
+  /* Arrays that a surface may have besides points and triangles, named after the members of
+   * mcor_surface. Samples can have only the arrays of MCOR_OUT_GRADIENTS. */
   typedef enum mcor_output
   {
     MCOR_OUT_NORMALS = 1,
@@ -386,13 +386,13 @@ extern "C"
      * at walls stay open. Caps cannot be combined with MCOR_PAIRS or with `filled`. */
     int capping; /* mcor_capping */
 
-    /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
-     * particles. The input then needs only the particles whose supports miss the box by no more
-     * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
-     * supports of these particles. The surface has the same bits as with all particles. Borrowed
-     * until return. mcor_probe and mcor_derive take the result of mcor_measure_probe_globals
-     * instead. Their results are valid in the box and on its sides; elsewhere, they are
-     * meaningless, or 0 for particles two cubes or more away from the box. */
+    /* NULL: lattice and ranges are measured over the input. Otherwise the result of
+     * mcor_measure_globals for all particles. The input then needs only the particles whose
+     * supports miss the box by no more than mcor_reach_margin; with computed volumes, also all
+     * particles within the (unscaled) supports of these particles. The surface has the same bits as
+     * with all particles. Borrowed until return. mcor_probe and mcor_derive take the result of
+     * mcor_measure_probe_globals instead. Their results are valid in the box and on its sides;
+     * elsewhere, they are meaningless, or 0 for particles two cubes or more away from the box. */
     const mcor_globals* globals;
 
     /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals
@@ -476,11 +476,11 @@ extern "C"
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
     /* seed_cells: the cells where the search for the surface begins. With complete seeds and
-     * uniform cubes: all cells, except where a bound of the field in 8 x 8 x 8 nodes excludes a
-     * surface. With complete seeds and adaptive cubes: the cells of leaves (undivided bricks of
-     * cubes) through which the surface passes. With pair seeds: the cells between the two particles
-     * of each pair. seed_cells_not_intersected: how many of the seed cells the surface does not
-     * use. These counts and most of the following ones are summed over iso values. */
+     * uniform cubes: all cells, except where a bound of the field excludes a surface. With complete
+     * seeds and adaptive cubes: the cells of leaves (undivided bricks of cubes) through which the
+     * surface passes. With pair seeds: the cells between the two particles of each pair.
+     * seed_cells_not_intersected: how many of the seed cells the surface does not use. These counts
+     * and most of the following ones are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     /* Not summed over iso values: bricks that exist after the last iso value, and nodes that then
      * have values, some of them from earlier calls. */
@@ -503,10 +503,10 @@ extern "C"
      * face, the cell cuts off a part of the surface that the finer cells resolve. */
     int64_t flat_loops;
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
-    /* With MCOR_TOPOLOGY_FIELD. joined_faces: ambiguous faces on which the field connects the two
-     * nodes above the iso value (MCOR_TOPOLOGY_TABLE keeps them apart on all ambiguous faces).
-     * ambiguous_cells: cells in which a tunnel may join two polygons of the surface. tunnels: cells
-     * in which a tunnel joins them. */
+    /* All 0 without MCOR_TOPOLOGY_FIELD. joined_faces: ambiguous faces on which the field connects
+     * the two nodes above the iso value (MCOR_TOPOLOGY_TABLE keeps them apart on all ambiguous
+     * faces). ambiguous_cells: cells in which a tunnel may join two polygons of the surface.
+     * tunnels: cells in which a tunnel joins them. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Mean, greatest value and standard deviation of the distance between a linearly interpolated
      * vertex and the corrected vertex, unit L, as in the paper's Table V. */

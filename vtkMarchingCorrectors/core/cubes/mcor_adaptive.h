@@ -9,7 +9,6 @@
 
 #include "mcor_internal.h"
 
-/* Whether there are several levels. */
 static inline bool mcor_is_adaptive(const mcor_lattice* lattice)
 {
   return lattice->levels > 1;

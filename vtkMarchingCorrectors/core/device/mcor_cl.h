@@ -29,11 +29,12 @@ typedef struct mcor_locked
   cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
   void* host;
   size_t size, written; /* written: bytes to copy to the buffer until it is unmapped */
-  /* Bytes that the driver copies to or from the buffer, or has copied since the last mcor_finish */
+  /* How many bytes the driver has begun to copy to or from the buffer. mcor_finish resets the
+   * number to 0, unless the memory is mapped to be written. */
   size_t sent;
 } mcor_locked;
 
-/* One variant of the programs: everything that their compilation depends on. */
+/* One variant of the programs: what their compilation depends on, besides the device. */
 typedef struct mcor_build
 {
   mcor_sph_kernel sph_kernel;
@@ -47,7 +48,7 @@ typedef struct mcor_build
 typedef enum mcor_program
 {
   /* The next five programs depend neither on the SPH kernel, nor on the field, nor on solids, so
-   * they are compiled only once. */
+   * they are compiled once for each precision. */
   MCOR_PROGRAM_GRID,    /* scans, sorts, the search grid */
   MCOR_PROGRAM_BRICKS,  /* blocks and bricks */
   MCOR_PROGRAM_CELLS,   /* marching, and triangles that are cut; lines in two dimensions */
@@ -159,8 +160,8 @@ typedef struct mcor_arg
   }
 
 /* How much one work-item does. Light: a few operations for one of many elements; medium: a brick or
- * a batch; heavy: an evaluation of the field. On a CPU each medium or heavy work-item is a
- * work-group of its own, because CPUs run code faster without a loop over the group. */
+ * a run of elements; heavy: an evaluation of the field. On a CPU each medium or heavy work-item is
+ * a work-group of its own, because CPUs run code faster without a loop over the group. */
 typedef enum mcor_load
 {
   MCOR_LIGHT,
@@ -178,7 +179,7 @@ typedef enum mcor_load
 /* Opens a device by name or number. NULL or "": the device that MCOR_DEVICE in the environment
  * names, or else the default. place, count: see mcor_create_shared_context. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Called before each call. Does nothing if the user named a device. Otherwise, if the open device
+/* Called when a call begins. Does nothing if the user named a device. Otherwise, if the open device
  * cannot run the build, or replaces a device that could not run an earlier build, opens the best
  * device that can run this build. Fails if no device can run it. release: frees everything on the
  * old device first. */
@@ -191,7 +192,7 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
  * in the order in which a run needs them. Does nothing on the built-in device, or if only one
  * thread may be used. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
-/* Returns about how many seconds building the missing programs takes; 0: not known. */
+/* Returns about how many seconds the missing programs take to build; 0: none, or not known. */
 double mcor_build_rest(mcor_cl* cl);
 /* Waits for programs under way, ends the threads that build, and keeps the built programs. */
 void mcor_end_building(mcor_cl* cl);

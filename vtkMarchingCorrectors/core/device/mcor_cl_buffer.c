@@ -111,7 +111,7 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
   mcor_cl* cl = &context->cl;
   const size_t size = (bytes + 255) / 256 * 256 + 256; /* a buffer is never empty */
   mcor_release(context, buffer);
-  /* Takes the smallest kept buffer with enough room, unless it is far too large. */
+  /* Takes the smallest kept buffer with enough room, of which at most an eighth stays unused. */
   int best = -1;
   for (int i = 0; i < cl->kept_count; ++i)
   {
@@ -337,7 +337,7 @@ mcor_status mcor_unmap_all(
   return status;
 }
 
-/* Returns how many bytes to fill or copy between two progress reports; they take about 10 ms. */
+/* Returns how many of `bytes` to fill or copy before the next report: 32 MiB (10 ms) at most. */
 static size_t mcor_step_of(size_t bytes)
 {
   const size_t most = (size_t)1 << 25;

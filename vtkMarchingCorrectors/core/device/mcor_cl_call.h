@@ -3,7 +3,7 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* Only for the files mcor_cl_*.c, which call OpenCL. Also tells what is special about drivers. */
+/* Private to mcor_cl_*.c, which call OpenCL: errors, the profile, programs, kinds of drivers. */
 
 #include "mcor_internal.h"
 #include "mcor_native.h"

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The names of codes, which are negative. */
+/* The names of OpenCL's error codes, which are negative: element i is the name of code -i. */
 #define MCOR_NAMED(code) [-(code)] = #code
 static const char* const mcor_error_names[] = { MCOR_NAMED(CL_DEVICE_NOT_FOUND),
   MCOR_NAMED(CL_DEVICE_NOT_AVAILABLE), MCOR_NAMED(CL_COMPILER_NOT_AVAILABLE),

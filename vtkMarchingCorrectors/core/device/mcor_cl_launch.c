@@ -36,7 +36,7 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   return MCOR_OK;
 }
 
-/* The first launch of a kernel takes less than this if no driver compiles the kernel. */
+/* A first launch takes less than this, besides the kernel's own time, if no driver compiles. */
 #define MCOR_COMPILE_SECONDS 0.01
 
 /* Launches a kernel for the first time, alone, since drivers may compile it only now. The time of
@@ -68,14 +68,14 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
     context, MCOR_COMMAND_LAUNCH, kernel->name, 0, fmax(running, 0), fmax(running, 0), NULL);
 }
 
-/* The time that a part of a heavy launch should take. Drivers of GPUs abort a launch that takes
+/* The time that a part of a launch should take. Drivers of GPUs abort a launch that takes
  * seconds, and a user may want to cancel the run. A single work-item is never cut. */
 #define MCOR_PART_SECONDS 0.04
 #define MCOR_FIRST_PART 65536 /* work-items, on a GPU */
 /* MCOR_PART_TERMS: the most terms of sums in a part, for each compute unit of a CPU, in single
  * precision. MCOR_DOUBLE_TERMS: the same in double precision, in which a term takes longer.
- * Usual launches fit into one part. Parts do not become larger, because the next work-items may
- * have far more to do. */
+ * Parts have no more terms even if they are done quickly, because the next work-items may have far
+ * more to do. */
 #define MCOR_PART_TERMS (1 << 21)
 /* While a kernel's time is unknown, its first part on a CPU has the largest allowed number of
  * work-items, divided by this number. */
@@ -197,7 +197,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
 mcor_status mcor_finish(mcor_context* context)
 {
   MCOR_CL_COMMAND(context, MCOR_COMMAND_WAIT, "", 0, clFinish(context->cl.queue), "clFinish");
-  /* Now no copy of locked memory is under way. The host may still write to what it has mapped. */
+  /* No copy is under way now. Memory that the host still writes keeps `sent`, for mcor_send. */
   for (mcor_locked* l = context->cl.locked; l < context->cl.locked + MCOR_LOCKED_LIMIT; ++l)
   {
     l->sent = l->of && l->written > 0 ? l->sent : 0;

@@ -30,8 +30,8 @@ typedef struct mcor_native_program
   const char* options;
   mcor_instructions instructions;
   mcor_native_run* run;
-  /* kernels: the names, each with a semicolon behind it. arguments: for each kernel a letter per
-   * argument (b: a buffer; 4, 8: bytes), and a semicolon. */
+  /* kernels: the names, each with a semicolon behind it. arguments: for each kernel a character per
+   * argument (b: a buffer; 4, 8: a number of so many bytes), and a semicolon. */
   const char *kernels, *arguments;
 } mcor_native_program;
 

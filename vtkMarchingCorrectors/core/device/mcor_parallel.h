@@ -3,7 +3,7 @@
 #ifndef mcor_parallel_h
 #define mcor_parallel_h
 
-/* Loops in several threads: loops of the host, on all processors that the calling thread may use,
+/* Loops in several threads: loops of the host, on processors that the calling thread may use,
  * and launches on the built-in device. */
 
 #include "mcor.h"

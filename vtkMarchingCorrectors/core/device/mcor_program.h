@@ -3,14 +3,14 @@
 #ifndef mcor_program_h
 #define mcor_program_h
 
-/* Which kernel sources make up which program, and the options that they are compiled with. No
- * OpenCL calls. */
+/* Which kernel sources make up which program, and the options that they are compiled with. Nothing
+ * here calls OpenCL. */
 
 #include "mcor_cl.h"
 
 #define MCOR_SOURCE_LIMIT 64
 
-/* An OpenCL source; the build makes the list (kernels/programs.cmake). */
+/* An OpenCL source. The build makes the list of all sources (kernels/programs.cmake). */
 typedef struct mcor_kernel_source
 {
   const char* text; /* NULL ends the list */
@@ -24,9 +24,9 @@ typedef struct mcor_kernel_source
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
-/* Returns the programs whose kernels are compiled into this one, as bits 1 << mcor_program. Without
- * cl->builds_sets, this is the program itself. With it, MCOR_PROGRAM_GRID, _NODES and _PROBE have
- * all programs of their set (see MCOR_PARTS_LATTICE), and the other programs have none. */
+/* Returns, as bits 1 << mcor_program, the programs whose kernels `program` contains. Without
+ * cl->builds_sets, it contains only its own kernels. With cl->builds_sets, MCOR_PROGRAM_GRID,
+ * _NODES and _PROBE contain all kernels of their set (see MCOR_PARTS_LATTICE), the others none. */
 int mcor_parts_of(const mcor_cl* cl, mcor_program program);
 /* Returns the program that has a kernel; the beginning of the kernel's name tells which. */
 mcor_program mcor_program_of(const mcor_cl* cl, const char* kernel);

@@ -20,8 +20,8 @@
  * would need more cells has hardly any particles in each, so that larger cells are as good. */
 #define MCOR_CELL_LIMIT (1 << 19)
 
-/* Divides an axis into cells of a level. A cell is `cell` cubes long, or a little longer if whole
- * cells must fill a period. A period no longer than `cell` is one cell. */
+/* Divides an axis into cells of a level. A cell is `cell` cubes long, or longer if whole cells
+ * must fill a period. A period no longer than `cell` is one cell. */
 static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell, mcor_level* level)
 {
   const int period = lattice->period[axis];

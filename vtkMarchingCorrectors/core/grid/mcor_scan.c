@@ -45,7 +45,7 @@ static mcor_status mcor_scan_segments(
     MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(buffer));
 }
 
-/* Scans as mcor_scan_segments does. */
+/* Scans as mcor_scan_segments does. Fails if the total is above MCOR_COUNT_LIMIT. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
 {
   int64_t sum;
@@ -56,7 +56,7 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
   return MCOR_OK;
 }
 
-/* Counts the bits that are set in both of two arrays of masks. */
+/* Counts the bits set in both arrays of masks. bricks.bit_counts gets the counts' prefix sums. */
 mcor_status mcor_count_bits(
   mcor_context* context, const mcor_buffer* masks, const mcor_buffer* within, int count, int* total)
 {

@@ -94,7 +94,7 @@ MCOR_OF_Q mcor_ddw_quadratic(realv q)
   return q < (real)2 ? (realv)2 : (realv)0;
 }
 
-/* w along one axis: 1 - 5/2 q^2 + 3/2 q^3 = 1/2 (2-q)^2 (1-q) - (1-q)^2 (1-2q). */
+/* w along one axis: 1/2 (2 - q)^2 (1 - q) up to q = 2, less (1 - q)^2 (1 - 2 q) up to q = 1. */
 MCOR_OF_Q mcor_w_mprime4(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0), b = fmax((real)1 - q, (realv)0);

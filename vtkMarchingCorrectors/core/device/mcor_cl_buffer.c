@@ -236,7 +236,10 @@ static mcor_status mcor_map_view(mcor_context* context, const mcor_buffer* buffe
     MCOR_TRY(mcor_take_locked(context, some, &locked));
     locked->written = write ? bytes : 0;
     locked->sent = write || waits ? 0 : bytes;
-    MCOR_TRY(write ? MCOR_OK : mcor_enqueue_read(context, buffer, 0, locked->host, bytes, waits));
+    if (!write)
+    {
+      MCOR_TRY(mcor_enqueue_read(context, buffer, 0, locked->host, bytes, waits));
+    }
     locked->of = buffer->mem;
     *data = locked->host;
     return MCOR_OK;

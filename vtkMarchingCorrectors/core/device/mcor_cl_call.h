@@ -57,8 +57,10 @@ double mcor_event_seconds(cl_event event);
     cl_event* const MCOR_EVENT =                                                                   \
       (context)->cl.profile ? mcor_begin_profiled((context)->cl.profile) : NULL;                   \
     MCOR_CL_TRY(context, call, what);                                                              \
-    MCOR_TRY((context)->cl.profile ? mcor_end_profiled(context, command, name, bytes) : MCOR_OK);  \
-    (void)MCOR_EVENT;                                                                              \
+    if (MCOR_EVENT)                                                                                \
+    {                                                                                              \
+      MCOR_TRY(mcor_end_profiled(context, command, name, bytes));                                  \
+    }                                                                                              \
   } while (0)
 
 /* mcor_cl_error.c */

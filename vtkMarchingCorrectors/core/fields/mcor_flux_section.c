@@ -229,19 +229,24 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_
           const int along = (a + e) % 3;
           edges[is_high ? e - 1 : 2 - e][along] = x[3 + along] - x[along];
         }
-        MCOR_TRY(is_across || !*has_size
-            ? MCOR_OK
-            : mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, outwards));
+        if (!is_across && *has_size)
+        {
+          MCOR_TRY(mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, outwards));
+        }
       }
       return MCOR_OK;
     case MCOR_SECTION_TRIANGLES:
       sign = mcor_orientation(x, section->point_count);
       for (; x < end; x += 9)
       {
-        MCOR_TRY(job->is_plane ? mcor_leaves_plane(job, number)
-            : mcor_find_edges(x, sign, edges, normal)
-            ? mcor_add_triangle(job, number, x, x + 3, x + 6, normal)
-            : MCOR_OK);
+        if (job->is_plane)
+        {
+          return mcor_leaves_plane(job, number);
+        }
+        if (mcor_find_edges(x, sign, edges, normal))
+        {
+          MCOR_TRY(mcor_add_triangle(job, number, x, x + 3, x + 6, normal));
+        }
       }
       *has_size = job->found[number].area > 0;
       return MCOR_OK;
@@ -255,10 +260,14 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_
         normal[w] = 0;
         normal[first] = along[second];
         normal[second] = -along[first];
-        MCOR_TRY(x[w] != job->plane->at || x[3 + w] != job->plane->at
-            ? mcor_leaves_plane(job, number)
-            : mcor_normalise(normal) > 0 ? mcor_add_line(job, number, x, along, normal)
-                                         : MCOR_OK);
+        if (x[w] != job->plane->at || x[3 + w] != job->plane->at)
+        {
+          return mcor_leaves_plane(job, number);
+        }
+        if (mcor_normalise(normal) > 0)
+        {
+          MCOR_TRY(mcor_add_line(job, number, x, along, normal));
+        }
       }
       *has_size = job->found[number].area > 0;
       return MCOR_OK;

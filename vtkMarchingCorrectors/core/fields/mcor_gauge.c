@@ -266,10 +266,14 @@ static mcor_status mcor_scan_row(
     const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
     const bool crossed = (row->weight[i] >= level) != (row->weight[high] >= level);
     const bool suspect = suspects && mcor_row_suspect(level, row, i);
-    if ((crossed || suspect) && mcor_owns_place(job, row, i))
+    const bool owned = (crossed || suspect) && mcor_owns_place(job, row, i);
+    if (owned && crossed)
     {
-      MCOR_TRY(crossed ? mcor_append_part(job, &job->changed, row, i, high) : MCOR_OK);
-      MCOR_TRY(suspect ? mcor_append_part(job, suspects, row, low, high) : MCOR_OK);
+      MCOR_TRY(mcor_append_part(job, &job->changed, row, i, high));
+    }
+    if (owned && suspect)
+    {
+      MCOR_TRY(mcor_append_part(job, suspects, row, low, high));
     }
   }
   return MCOR_OK;

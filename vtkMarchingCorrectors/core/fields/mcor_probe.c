@@ -409,7 +409,10 @@ static mcor_status mcor_run_probe(
   }
   mcor_status status = mcor_prepare(context, input, options);
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
-  MCOR_THEN(status, context->grid.count > 0 ? mcor_probe_all(&run) : MCOR_OK);
+  if (context->grid.count > 0)
+  {
+    MCOR_THEN(status, mcor_probe_all(&run));
+  }
   mcor_release_probe(&run);
   free(flat);
   /* The attributes stay on the device for the next probe if all of them fit at once and are finite,

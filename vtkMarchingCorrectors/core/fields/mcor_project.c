@@ -228,12 +228,18 @@ static mcor_status mcor_run_project(
   {
     mcor_bound_by_box(context, options);
     status = mcor_prepare(context, input, options);
-    MCOR_THEN(status, computes ? mcor_read_volumes(context, input, &job->volumes) : MCOR_OK);
+    if (computes)
+    {
+      MCOR_THEN(status, mcor_read_volumes(context, input, &job->volumes));
+    }
   }
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
   MCOR_THEN(status, mcor_choose_axes(job));
   MCOR_THEN(status, mcor_place_image(job, &is_empty));
-  MCOR_THEN(status, is_empty || job->places_only ? MCOR_OK : mcor_spread_particles(job));
+  if (!is_empty && !job->places_only)
+  {
+    MCOR_THEN(status, mcor_spread_particles(job));
+  }
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   free(job->column.nodes);
   free(job->sums);

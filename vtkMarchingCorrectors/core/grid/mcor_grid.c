@@ -260,7 +260,10 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15));
   grid->count = staging.count;
   context->attributes.kept = 0; /* kept attributes are in another order */
-  MCOR_THEN(status, staging.count > 0 ? mcor_sort_particles(context, &staging) : MCOR_OK);
+  if (staging.count > 0)
+  {
+    MCOR_THEN(status, mcor_sort_particles(context, &staging));
+  }
   MCOR_TRY(mcor_unmap_all(context, staging.views, staging.view_count, status));
   if (staging.count > 0 && mcor_needs_density(input))
   {

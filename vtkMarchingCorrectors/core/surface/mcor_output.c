@@ -343,7 +343,10 @@ static mcor_status mcor_evaluate_outputs(mcor_context* context)
  * host delivers triangles. */
 static mcor_status mcor_begin_vertices(mcor_download* d)
 {
-  MCOR_TRY(d->view_count > 0 ? mcor_evaluate_outputs(d->context) : MCOR_OK);
+  if (d->view_count > 0)
+  {
+    MCOR_TRY(mcor_evaluate_outputs(d->context));
+  }
   return mcor_begin_mapping(d->context, d->views + 1, d->view_count - 1);
 }
 

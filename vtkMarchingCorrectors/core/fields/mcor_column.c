@@ -12,8 +12,8 @@
 /* MCOR_COLUMN_CELLS, MCOR_COLUMN_FINE_CELLS: how many cells the table has along an axis, from the
  * centre to the end of the support. The fine table serves if the shorter side of a pixel is below
  * MCOR_SMALL_PIXEL times the greatest h. Errors fall at least with the third power of a cell's
- * size: if h is 3 pixels, errors are about 1e-8 of the greatest value; if h is 50 pixels, below
- * 1e-6. MCOR_PROFILE: how many steps job->profile has over the support. */
+ * size. If h is 3 pixels, errors are about 1e-8 of the most that a particle adds to a pixel; if h
+ * is 50 pixels, below 1e-6. MCOR_PROFILE: how many steps job->profile has over the support. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
@@ -147,8 +147,8 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
 }
 
 /* Along an axis, the density is evaluated at the nodes, then at the quadrature points of each cell.
- * Returns the coordinate of evaluation i, in h. *length: the cell's length at this coordinate.
- * Cells of radial kernels are shorter near the centre, where the density may have a cusp. */
+ * Returns the coordinate of evaluation i, in h. *length: how fast the coordinate grows there, per
+ * cell. Cells of radial kernels are shorter near the centre, where the density may have a cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];

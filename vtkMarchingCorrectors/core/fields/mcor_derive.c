@@ -18,9 +18,9 @@
 /* The most particles that are treated at a time. */
 #define MCOR_DERIVE_BATCH (1 << 20)
 
-/* A matrix M with a worse condition is not inverted. The condition tells how much inversion
- * magnifies rounding. It is the product of the Frobenius norms of M and its inverse, 3 for the
- * identity. */
+/* A matrix M is inverted only if its condition number is below this. The condition number tells how
+ * much inversion magnifies rounding. It is the product of the Frobenius norms of M and its inverse,
+ * 3 for the identity. */
 #define MCOR_WORST_CONDITION 300
 
 typedef struct mcor_derive_run
@@ -175,7 +175,7 @@ static mcor_status mcor_derive_all(mcor_derive_run* run)
   for (int i = 0; i < attributes->varying_count; ++i)
   {
     mcor_component* c = &attributes->varying[i];
-    /* Two bits stay free: one for the sign, one for the difference of two values. */
+    /* Scaled values are at most 2^29 or 2^61 in magnitude, so differences do not overflow. */
     c->scale = ldexp(c->scale, fix == sizeof(int32_t) ? 29 : 61);
     MCOR_TRY(mcor_sort_values(context, run->input, &run->input->attributes[c->attribute],
       c->component, c->shift, c->scale, true, &run->arrays, i));

@@ -24,8 +24,8 @@
  * of the two counts as at least this share of the greatest value among all particles, because this
  * greatest value decides how the device rounds means. */
 #define MCOR_FLUX_FLOOR 0.0625
-/* A sum has room for this many times the product of the section's area, the greatest speed and the
- * greatest density. M'4, which has weights below 0, makes sums a little larger than the product. */
+/* A sum has room for this many times the section's area, times the greatest speed and density if
+ * they are in the sum. Weights below 0, as M'4 has, make sums a little larger than this product. */
 #define MCOR_FLUX_ROOM 8
 /* A piece is accurate enough if its two results differ by at most MCOR_FLUX_TOLERANCE times the
  * scale in mcor_settle_piece times an area. This area is the piece's area or, if larger,
@@ -175,9 +175,9 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, int count)
   return mcor_sample_level(&job->base, job->weight, samples);
 }
 
-/* Adds to `sum` the integrals over the part of a triangle or line that is in fluid. corner: the
- * samples of a piece that are the corners. size: the area or length. Between the corners, weights
- * and values count as linear. Returns whether the level cuts the triangle or line. */
+/* Adds to `sum` the integrals over the part of a triangle or line that is in fluid. corner: numbers
+ * of the samples at its corners. size: its area or length. Between the corners, weights and values
+ * count as linear. Returns whether the level cuts the triangle or line. */
 static bool mcor_add_cut(const mcor_flux_job* job, const int* corner, const double* weight,
   double value[][MCOR_FLUX_SUMS], double size, double sum[MCOR_FLUX_SUMS])
 {
@@ -298,8 +298,8 @@ static mcor_status mcor_settle_piece(mcor_flux_job* job, mcor_flux_piece* piece,
   return MCOR_OK;
 }
 
-/* Adds up the pieces of all sections. The first pass only counts cells, and fails if there are too
- * many, before time is spent on any of them. */
+/* Adds up the pieces of all sections. The first pass only counts cells and adds up their areas. It
+ * fails if there are too many cells, before any cell is evaluated. */
 static mcor_status mcor_add_fluxes(mcor_level_job* base)
 {
   mcor_flux_job* job = (mcor_flux_job*)base;
@@ -340,8 +340,8 @@ static mcor_status mcor_add_fluxes(mcor_level_job* base)
 
 /* ---- the call ---- */
 
-/* Reads the ranges of velocity and density. Sets the lowest speed and density that the accuracy of
- * a piece is relative to, and the unit of each sum. Sums are whole numbers of their units. */
+/* Sets speed_floor and density_floor (see MCOR_FLUX_FLOOR), and the unit of each sum, from the
+ * ranges of velocity and density. Sums are whole numbers of their units. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
   mcor_context* context = job->base.context;

@@ -59,7 +59,7 @@ typedef struct mcor_flux_job
   double speed_floor, density_floor;
   mcor_flux_section* found;            /* [section_count] */
   MCOR_LIST(mcor_flux_piece) pieces;   /* the pieces of all sections */
-  bool is_counting;                    /* the first pass, which only counts cells */
+  bool is_counting;                    /* the first pass, which only counts and measures cells */
   int64_t next;                        /* index of the next one of `pieces` in this pass */
   MCOR_LIST(mcor_flux_piece) parts;    /* halves of earlier pieces, which are treated first */
   double cells;                        /* how many cells this pass has found so far */

@@ -197,7 +197,7 @@ static mcor_status mcor_add_disc(
 
 /* Appends the pieces of a section, whose number of points is checked already. *has_size becomes
  * false if the section has no area or, if it consists of lines, no length. In two dimensions, a
- * rectangle or disc has a size even if it does not cross the plane. */
+ * rectangle, disc or box has a size even if it does not cross the plane. */
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number, bool* has_size)
 {
   const mcor_section* section = &job->sections[number];

@@ -4,11 +4,11 @@
 /* Gauges: where lines cross the free surface. All lines go through each step together, so the
  * device has many points at a time.
  *
- * Samples are at most a quarter of the smallest smoothing length apart. Over this distance, the
- * weight sum is almost a parabola. If the middle one of three samples is an extremum, the
+ * Samples are at most a quarter of the smallest scaled smoothing length apart. Over this distance,
+ * the weight sum is almost a parabola. If the middle one of three samples is an extremum, the
  * parabola's own extremum goes beyond this sample by at most an eighth of the greater difference
- * between the samples. To be safe, half of this difference is assumed. Where the extremum may then
- * be beyond the level, the line is sampled more finely.
+ * between the samples. To be safe, at least half of this difference is assumed. Where such an
+ * extremum may be beyond the level, the line is sampled more finely.
  *
  * Ranks share lines sample by sample. A rank owns the samples in cells of its box, the extrema at
  * these samples, and the crossings between each sample and the next. The rank has the particles
@@ -73,7 +73,6 @@ typedef struct mcor_gauge_place
 
 typedef MCOR_LIST(mcor_gauge_place) mcor_gauge_places;
 
-/* A call of mcor_gauge that is under way. */
 typedef struct mcor_gauge_job
 {
   mcor_level_job base;          /* must be first */
@@ -233,7 +232,8 @@ static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts*
 }
 
 /* Returns whether the weight sum may cross the level twice near sample i. For this, sample i must
- * be on the same side of the level as its neighbours, and at most as far from the level. */
+ * be on the same side of the level as its neighbours, at most as far from the level as they are,
+ * and so near that an extremum may be beyond the level (see the top of this file). */
 static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
@@ -255,8 +255,9 @@ static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
   return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
 }
 
-/* Appends to job->changed the parts of a row in which the line crosses the level. If `suspects` is
- * not NULL, appends to `suspects` the parts with an extremum that may be beyond the level. */
+/* Looks at the places of a row that this call owns. Appends to job->changed the parts in which the
+ * line crosses the level. If `suspects` is not NULL, appends to `suspects` the parts with an
+ * extremum that may be beyond the level. */
 static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects)
 {
@@ -279,10 +280,10 @@ static mcor_status mcor_scan_row(
   return MCOR_OK;
 }
 
-/* Divides each of `parts`, which are job->changed or job->suspects, into sections. Replaces the
- * parts by their sections with a crossing or, for job->suspects, with an extremum that may be
- * beyond the level. If a part of job->suspects has crossings, its sections with a crossing go to
- * job->changed, and its other sections are dropped. one: a part keeps only its first crossing. */
+/* Divides each of `parts`, which are job->changed or job->suspects, into sections. A part of
+ * job->changed is replaced by its sections with a crossing (one: by the first of them). If a part
+ * of job->suspects has crossings, its sections with a crossing move to job->changed; else the part
+ * is replaced by the sections beside each extremum that may be beyond the level. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {

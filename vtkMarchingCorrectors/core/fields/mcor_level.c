@@ -47,10 +47,10 @@ bool mcor_owns_point(const mcor_level_job* job, const double point[3])
   return true;
 }
 
-/* The fluid ends where the weight sum T of fluid and solids is below the level, or where the
- * fluid's own sum F is below share times T. The lowered sum is the lesser of T and level + (F -
- * share T) / (1 - share). The second number equals the level where F is exactly share T. Where F is
- * 0, or equals T, as far from solids, the lowered sum is F. */
+/* Let T be the weight sum of fluid and solids, F the fluid's own sum, and `share` the least share
+ * of T that the fluid must have. The fluid ends where T is below the level, or F below share T. The
+ * lowered sum is the lesser of T and level + (F - share T) / (1 - share); the second number equals
+ * the level where F is exactly share T. If F is 0, or equals T, the lowered sum is F. */
 mcor_status mcor_sample_level(mcor_level_job* job, double* weight, int count)
 {
   mcor_probe_run* run = job->run;

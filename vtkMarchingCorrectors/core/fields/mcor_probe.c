@@ -71,8 +71,8 @@ static void mcor_read_points(
   }
 }
 
-/* Writes each point's node, the lower corner of its lattice cell, and its offset from the node, in
- * edges of the cell. Outside of the lattice, where no particle reaches, the node is -1. */
+/* Writes each point's node (the lower corner of its lattice cell) and the point's offset from this
+ * node, in edges of the cell. Outside of the lattice, where no particle reaches, the node is -1. */
 static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_probe_run* run = data;
@@ -283,8 +283,8 @@ static bool mcor_has_attributes(const mcor_context* context, const mcor_input* i
   return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;
 }
 
-/* Evaluates all arrays at all points: for one group of arrays after the other, goes through all
- * batches of points. */
+/* Evaluates all arrays at all points. Each group of arrays is evaluated at all batches of points
+ * before the next group is loaded. */
 static mcor_status mcor_probe_all(mcor_probe_run* run)
 {
   mcor_context* context = run->context;
@@ -415,8 +415,8 @@ static mcor_status mcor_run_probe(
   }
   mcor_release_probe(&run);
   free(flat);
-  /* The attributes stay on the device for the next probe if all of them fit at once and are finite,
-   * and if this call has no globals. */
+  /* The attributes stay on the device for the next probe if they have a version, if all of them fit
+   * at once and are finite, and if this call has no globals. */
   bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !options->globals;
   for (int a = 0; a < input->attribute_count; ++a)
   {

@@ -40,8 +40,8 @@ mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch,
 /* Evaluates at points [first, last) the attributes that the device holds. Writes run->samples. */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
-/* For each attribute, makes an array of zeros, [count][components][numbers]; NULL if not_finite is
- * not below 0. Free *arrays with mcor_free_arrays, even after a failure. */
+/* For each attribute, makes an array of zeros, [count][components][numbers]; NULL for attributes
+ * with not_finite >= 0. Free *arrays with mcor_free_arrays, even after a failure. */
 mcor_status mcor_make_arrays(mcor_context* context, const mcor_input* input,
   const int64_t* not_finite, int64_t count, int numbers, double*** arrays);
 void mcor_free_arrays(double** arrays, int count);

@@ -60,10 +60,10 @@ static void mcor_read_amounts(
 
 /* ---- particles in the image ---- */
 
-/* Finds the periodic images of a particle that matter, [first, last] along each axis. These are the
- * images in the box. If the line of sight is along x, y or z, images that reach into the box across
- * the line of sight matter, too. Moves x into the first period of the box. Returns whether any
- * image matters. */
+/* Finds which periodic images of a particle count, [first, last] along each axis: the images in the
+ * box. If the line of sight is along x, y or z, it is enough along the other two axes that the
+ * image's support reaches the box. Moves x into the first period of the box. Returns whether any
+ * image counts. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {
@@ -113,7 +113,7 @@ static bool mcor_make_splat(
 
 /* Adds a particle to a row of pixels. A pixel's share below `lowest` counts as `lowest`. below,
  * above: the kernel's integral E (mcor_project.h) at the lower and the upper corners of the row's
- * pixels. Each number's rounded part is added to coarse, and the rounded rest to fine. */
+ * pixels. What a pixel gets is rounded and added to coarse; the rest, rounded, is added to fine. */
 static void mcor_add_pixels(int count, double amount, double lowest, const double* restrict below,
   const double* restrict above, const double unit[2], double* restrict coarse,
   double* restrict fine)
@@ -174,8 +174,9 @@ static void mcor_spread_splat(const mcor_project_job* job, const mcor_splat* s, 
 
 /* ---- the passes ---- */
 
-/* Spreads particles, with their periodic images, over the pixels. In the first pass, without locks,
- * only counts particles and images that reach the image, and bounds what one adds to a pixel. */
+/* Spreads particles and their periodic images over the pixels. The first pass, without locks, only
+ * counts what reaches a pixel, bounds what a particle adds to a pixel, and finds the first particle
+ * whose amount is not finite. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;

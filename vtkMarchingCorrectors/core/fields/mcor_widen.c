@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Widening: longer smoothing lengths make a smoother surface, as long as each particle stays inside
- * of the surface. This call makes the factors; mcor_extract takes them with its input.
+ * of the surface. mcor_widen makes the factors; mcor_extract takes them with its input.
  *
  * The rule. All sums are over fluid particles k; ramp(x, a, b) rises from 0 at a to 1 at b as
  * t^2 (3 - 2 t).
@@ -110,8 +110,8 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-/* Writes the factors, if they are wanted, in the input's order, and which particles are outside of
- * the surface. If volumes were computed, also writes the volumes, which follow from the weights. */
+/* If the factors are wanted, writes them in the input's order, and which particles are outside of
+ * the surface. If volumes are wanted, writes the volumes, which follow from the weights. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_widen_run* run = data;

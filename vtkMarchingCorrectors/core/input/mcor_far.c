@@ -20,9 +20,9 @@
 #define MCOR_FAR_FEW 8
 
 /* A particle is kept if its support ends at most this far from the bounds of a probe's points. The
- * unit is the length of a cube, enlarged in proportion to the particle's smoothing length. */
+ * unit is a cube's edge times (the particle's smoothing length / the smallest smoothing length). */
 #define MCOR_POINTS_SLACK 0.5
-/* How many cubes the lattice extends at most beyond a region, on each side. */
+/* On each side, the lattice ends at most this many cubes beyond region and particles in use. */
 #define MCOR_REGION_MARGIN 16
 
 /* mcor_far_slice counts in these sums: particles in use; particles that become absent; fluid
@@ -149,7 +149,7 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
   {
     return MCOR_OUT_OF_CAPACITY;
   }
-  /* far->place comes from the rank whose first far particle has the least number. */
+  /* far->first: the least index of a far particle on any rank. far->place: its position. */
   MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &far->first, 1));
   bool is_mine = own == far->first;
   for (int a = 0; a < 3; ++a)

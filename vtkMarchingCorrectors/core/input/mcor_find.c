@@ -28,7 +28,7 @@ void* mcor_find_memory(mcor_finder* f, size_t bytes)
   return mcor_own(f, malloc(bytes ? bytes : 1));
 }
 
-/* Keeps the first message that says what is wrong; frees later ones. Returns -1, not an index. */
+/* Keeps the first message that says what is wrong; frees later ones. Returns -1: no index. */
 static int mcor_refuse(mcor_finder* f, mcor_message message)
 {
   if (mcor_has_error(f))
@@ -77,8 +77,8 @@ static void mcor_put_element(void* array, mcor_element type, int64_t i, double v
   }
 }
 
-/* Returns an array as the core reads it: the array itself if it has floats or doubles without gaps,
- * else a copy. */
+/* Returns an array as the core reads it: the array itself if it has aligned floats or doubles
+ * without gaps, else a copy. */
 static mcor_array mcor_view_named(mcor_finder* f, const mcor_named* named)
 {
   static const double none[3];
@@ -446,7 +446,6 @@ static int mcor_choose_scalar(mcor_finder* f)
   return joined >= 0 ? joined : best >= 0 ? best : active < f->count ? active : -1;
 }
 
-/* Makes an array one of the attributes. */
 static void mcor_add_attribute(mcor_finder* f, int index, mcor_array view)
 {
   mcor_found* found = f->found;

@@ -109,7 +109,7 @@ static bool mcor_finds_fluid(const char* name, const mcor_kind* kinds, int count
 }
 
 /* Returns a message that an array of particle types is not used; no message if the array has fewer
- * than two values. */
+ * than two different values, or too many. */
 static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind* kinds, int count)
 {
   if (count < 2)
@@ -136,9 +136,9 @@ static mcor_message mcor_describe_unused_type(const char* name, const mcor_kind*
   return message;
 }
 
-/* Finds an array that tells without doubt which particles are fluid; among several, the one with
- * the most usual name. If there is none, found->unused_type names an array of particle types that
- * is not used. */
+/* Unless find_fluid is 0, chooses an array that tells without doubt which particles are fluid;
+ * among several, the one with the most usual name. If none is chosen, found->unused_type may name
+ * an array of particle types or, if find_fluid is 2, say that there is none. */
 static void mcor_look_for_fluid(mcor_finder* f)
 {
   mcor_found* found = f->found;

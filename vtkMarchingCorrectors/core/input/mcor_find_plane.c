@@ -87,8 +87,8 @@ static mcor_status mcor_refuse_plane(
  * of the spacing that they would have if spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
-/* Drops a plane that seems to come from rounding: the plane's coordinate is so large that steps of
- * single precision are coarse for the particles' spacing, and most tested particles have a twin. */
+/* Drops a plane that seems to come from rounding: the plane's coordinate is a float, the step to
+ * the next float is long for the particles' spacing, and most tested particles have a twin. */
 static mcor_status mcor_drop_rounded_plane(
   mcor_context* context, const mcor_input* input, mcor_plane* plane)
 {

@@ -17,11 +17,11 @@
 
 #define MCOR_THREE_DECADES 1000.0
 
-/* A value nearer to an end of the range than this share of it counts as at the end. */
+/* A value at most this share of the range away from an end of the range counts as at the end. */
 #define MCOR_NEAR_END 0.01
 
-/* If high values are more than this times the low ones, and the median is at an end of the range,
- * the low values count as zeros that rounding has changed. */
+/* If high values are more than this many times the low ones, and the median is at an end of the
+ * range, the low values count as zeros that rounding has changed. */
 #define MCOR_MANY_DECADES 1e6
 
 typedef struct mcor_bin_job
@@ -86,10 +86,9 @@ static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
   return mcor_reduce_doubles(context, MCOR_LEAST, job->minus[0], MCOR_BINS);
 }
 
-/* Narrows the bins' range to the bin that holds one value, again and again, until this bin has
- * fewer than `many` values, but at most `passes` times. number: the value's index in ascending
- * order. A bin's range ends at its least and its greatest value, so that a huge outlier does not
- * move the median. */
+/* Narrows the bins' range, again and again, to the bin that holds value `number` in ascending order
+ * (from 0), until this bin has fewer than `many` values, but at most `passes` times. A bin's range
+ * ends at its least and its greatest value, so that a huge outlier does not move the median. */
 static mcor_status mcor_narrow_bins(
   mcor_context* context, mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {

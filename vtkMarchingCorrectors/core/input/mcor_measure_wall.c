@@ -75,8 +75,8 @@ static void mcor_wall_add(
                                           : mcor_w_of(kernel, sqrt(mcor_dot(d, d)) * inv_h);
     if (w != 0 && weight == 0)
     {
-      /* Shares depend neither on the unit of volumes nor on the kernel's norm. So masses serve
-       * while volumes are not known, and the norm in space serves in a plane. */
+      /* Shares depend neither on the unit of volumes nor on the kernel's norm. So mass times h^d
+       * (d: the dimension) serves while volumes are unknown; the norm in space serves in a plane. */
       const int axes = wall->context->space.axes;
       const bool is_mass = mcor_needs_density(wall->input);
       mcor_read_size(wall->input, i, 1, &weight);

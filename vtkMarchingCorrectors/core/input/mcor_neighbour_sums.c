@@ -288,7 +288,7 @@ static double mcor_sum_at(
 }
 
 /* The search for smoothing lengths goes in steps: four from one power of 2 to the next. Returns the
- * greatest step that is not above h, or the step that comes `further` steps after it. */
+ * step that comes `further` steps after the greatest step that is not above h. */
 static double mcor_length_step(double h, int further)
 {
   int exponent;
@@ -304,8 +304,8 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
 {
   const double* x = job->sorted[i].x;
   const double least = MCOR_LENGTH_ERROR * job->extent;
-  /* The first guess is the distance to the nearer one of two particles. They are four places before
-   * and four places behind this particle along the curve, which may jump. */
+  /* The first guess is the distance to the nearer one of the particles four places before and four
+   * places behind this one along the curve. The guess may be too long, because the curve jumps. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {

@@ -29,14 +29,14 @@ typedef struct mcor_suspicion
 #define MCOR_LEAST_RATIO_QUINTIC 0.7
 
 /* A nearest particle may be very near by chance. So smoothing lengths are called too long only if
- * there are also many neighbours in all: more than this number times (support / smoothing
- * length)^3. If the ratio is above MCOR_SHEET_RATIO, MCOR_SHEET_NEIGHBOURS is this number instead,
- * because sheets and drops have few neighbours. */
+ * there are also many neighbours in all: more than is usual for the kernel, and more than this
+ * number times (support / smoothing length)^3. If the ratio is above MCOR_SHEET_RATIO, this number
+ * is MCOR_SHEET_NEIGHBOURS, because sheets and drops have few neighbours. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
-/* In two dimensions, the numbers MCOR_MANY_NEIGHBOURS and MCOR_SHEET_NEIGHBOURS become these two,
- * for (support / smoothing length)^2. */
+/* In two dimensions, these numbers replace MCOR_MANY_NEIGHBOURS and MCOR_SHEET_NEIGHBOURS, and are
+ * multiplied by (support / smoothing length)^2. */
 #define MCOR_MANY_IN_PLANE 5.6
 #define MCOR_ROW_NEIGHBOURS 3.5
 
@@ -196,8 +196,9 @@ static mcor_message mcor_warn_plane(const mcor_suspicion* s)
         n->plane_extent / h);
 }
 
-/* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies
- * between the particles' values. A sum may also be 0, or lie somewhat beyond the values. */
+/* Warns of iso values beyond the field's bounds. A Shepard mean with a positive kernel lies between
+ * the particles' values. A sum may also be 0. Other means and sums may lie somewhat beyond the
+ * bounds, so for these fields the warning comes only if the surface is empty. */
 static mcor_message mcor_warn_iso_value(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;

@@ -286,8 +286,8 @@ static mcor_status mcor_add_fill_fan(void* data, const mcor_cap_corner* corners,
   return MCOR_OK;
 }
 
-/* Packs a node into a key that ascends by squares of 4 x 4, so that successive nodes are near
- * each other. */
+/* Packs a node into a key. The nodes of each 4 x 4 square have successive keys, so that nodes with
+ * successive keys are near each other. */
 static uint64_t mcor_fill_node_key(const cl_int node[3])
 {
   const cl_int u = node[0], v = node[1];
@@ -345,9 +345,9 @@ static mcor_status mcor_add_polygon(mcor_filling* fill, int i)
     {
       next->begins_line = true;
       corners[count++] = &next->corner;
-      /* Goes to the other end of the line. A line's level has two corners on the border, or four.
-       * With four, the level has two lines. These lines surround the nodes below the level if
-       * `joined`, else the nodes above. */
+      /* Goes to the other end of the line. Lines of one iso value have two ends on the border, or
+       * four. If there are four, the two lines surround the nodes below the iso value if `joined`,
+       * else the nodes above. */
       const int level = next->level;
       const bool joined = mcor_find_number(&fill->lines[level].joined, (uint64_t)fill->lowest) >= 0;
       const int step = next->falls == joined ? 1 : fill->count - 1;

@@ -178,8 +178,8 @@ mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)
 
 /* ---- Lines ---- */
 
-/* The lines at a point. At most one line begins at it, and at most one ends. next: where the
- * beginning line ends; last: where the ending line begins; -1: no such line. */
+/* The lines at a point. At most one line begins here, and at most one ends here. next: where the
+ * line that begins here ends; last: where the line that ends here begins; -1: no such line. */
 typedef struct mcor_line_ends
 {
   int32_t next, last;

@@ -8,8 +8,7 @@
  * at the end. In the plane, sums in three dimensions equal sums in two, because each particle's
  * weight is multiplied by c h (c: plane_factor). The lattice is one layer of cells above the plane,
  * and its upper nodes copy the lower nodes, so that lines lie where the surface in three dimensions
- * would cross the plane. Until the output, a line is a triangle whose last two corners are the
- * same. */
+ * would cross the plane. Until the output, a line is a triangle with two equal corners. */
 
 #include "mcor_internal.h"
 

@@ -109,9 +109,9 @@ static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
   return v;
 }
 
-/* Joins vertices of one node that share an edge. p and q are the lowest vertices that the two are
- * joined to; `first` of the higher one of p and q becomes the lower one. If another thread has
- * changed this `first` in the meantime, tries again from its new value. */
+/* Joins any two vertices of one node that share an edge. p and q: the lowest vertices that the two
+ * are joined to so far. Sets `first` of the higher one of p and q to the lower one. If another
+ * thread has changed this `first` in the meantime, tries again from its new value. */
 static void mcor_join_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -111,7 +111,7 @@ static mcor_status mcor_enqueue_part(
 /* Launches all work-items in parts, which should take MCOR_PART_SECONDS each. On a CPU, a part has
  * the fewer work-items, the more particles reach a point (cl->terms). On the built-in device, parts
  * cost nothing, so each launch begins with small parts. With a driver, a launch begins with the
- * kernel's last part size, because for a second part the kernel may be compiled once more. */
+ * kernel's last part size, because drivers may compile the kernel once more for a second part. */
 static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)
 {

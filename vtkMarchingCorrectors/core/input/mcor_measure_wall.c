@@ -76,7 +76,7 @@ static void mcor_wall_add(
     if (w != 0 && weight == 0)
     {
       /* Shares depend neither on the unit of volumes nor on the kernel's norm. So mass times h^d
-       * (d: the dimension) serves while volumes are unknown; the norm in space serves in a plane. */
+       * (d: the dimension) serves while volumes are unknown, and the norm in space in a plane. */
       const int axes = wall->context->space.axes;
       const bool is_mass = mcor_needs_density(wall->input);
       mcor_read_size(wall->input, i, 1, &weight);

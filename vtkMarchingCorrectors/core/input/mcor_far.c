@@ -22,7 +22,7 @@
 /* A particle is kept if its support ends at most this far from the bounds of a probe's points. The
  * unit is a cube's edge times (the particle's smoothing length / the smallest smoothing length). */
 #define MCOR_POINTS_SLACK 0.5
-/* On each side, the lattice ends at most this many cubes beyond the region and all used particles. */
+/* Each side of the lattice is at most this many cubes beyond the region and all used particles. */
 #define MCOR_REGION_MARGIN 16
 
 /* mcor_far_slice counts in these sums: particles in use; particles that become absent; fluid

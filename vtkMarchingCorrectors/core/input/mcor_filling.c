@@ -17,8 +17,8 @@
 /* The densities of a liquid differ by at most this factor, even if they are low at its surface. */
 #define MCOR_LIQUID_RANGE 2.0
 
-/* Finds the ranges of x, y, z, smoothing length and density over the fluid and, as sums, the numbers
- * of fluid particles and of solids. */
+/* Finds the ranges of x, y, z, smoothing length and density over the fluid and, as sums, how many
+ * particles are fluid and how many are solids. */
 static mcor_findings mcor_measure_filling(const mcor_input* input)
 {
   mcor_findings found = mcor_no_findings();

@@ -345,8 +345,8 @@ static int on_building(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* If a driver builds programs for a context's first run with a kernel, a progress message says so; a later run builds
- * nothing. The built-in device's programs are built ahead, so there is no message. */
+/* If a driver builds programs for a context's first run with an SPH kernel, a progress message says so; a later run
+ * builds nothing. The built-in device's programs are built ahead, so there is no message. */
 static void test_build(void** state)
 {
   CORE_CONTEXT context = NULL;

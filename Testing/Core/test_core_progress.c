@@ -21,7 +21,7 @@ static int on_progress(void* user, double fraction, const char* phase)
   return c->calls++ == c->stop_at;
 }
 
-/* Makes one call of a kind (surface, probe, ...) that launches kernels. Frees the result. */
+/* Makes a call of this kind (0: surface, 1: probe, 2: derivatives), and frees the result. */
 static mcor_status run_kind(
   mcor_context* context, int kind, const mcor_input* input, const mcor_options* options)
 {
@@ -47,7 +47,7 @@ static mcor_status run_kind(
 }
 
 /* If each launch reports, there are many reports, and the fraction never falls. After a report whose callback asks to
- * stop, no kernel is launched. */
+ * stop, there is no other report. */
 static void test_cancel_between_launches(void** state)
 {
   mcor_context* context = *state;
@@ -97,8 +97,9 @@ static int count_phase(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* Each phase reports at many places, where it can be cancelled. Loops of the host and copies report, too, so this holds
- * for phases with few launches. (The built-in device reports somewhat more often than drivers.) */
+/* Each phase reports at several places, where the run can be cancelled. Loops of the host and copies report, too, so
+ * that phases with few launches also report often enough. (The built-in device reports somewhat more often than
+ * drivers.) */
 static void test_all_phases_ask(void** state)
 {
   mcor_context* context = *state;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests curvatures. The curvatures of balls and cylinders are worked out by hand; all others are compared with
+/* Tests curvatures. The curvatures of balls, cylinders and circles are worked out by hand; all others are compared with
  * differences of the oracle's gradients. */
 
 #include "core_fixture.h"
@@ -15,7 +15,7 @@ static mcor_surface curved(mcor_context* context, const particle_set* set, mcor_
   return core_extract(context, &input, options);
 }
 
-/* Returns the volume of the part of a unit cube around x that is in a ball; x becomes the centre of this part. */
+/* Returns the volume of a unit cube around x within a ball around the origin; x becomes the centre of this part. */
 static double share_of_ball(double x[3], double radius)
 {
   double sum[3] = { 0, 0, 0 };
@@ -38,8 +38,8 @@ static double share_of_ball(double x[3], double radius)
   return in / 8000.0;
 }
 
-/* A ball or cylinder of lattice particles must have the curvatures of its radius r: mean curvature times r is right to
- * within 1e-3, Gaussian curvature times r^2 to within 2e-3. axes: 3 for a ball, 2 for a cylinder. */
+/* The isosurface is a ball (axes 3) or a cylinder (axes 2) of radius r. Mean curvature times r must be right to within
+ * 1e-3, Gaussian curvature times r^2 to within 2e-3. */
 static void test_ball_and_cylinder(void** state)
 {
   static const struct
@@ -163,7 +163,7 @@ static void reference(
   curvature[1] = gauss / g2 / g2;
 }
 
-/* Compares curvatures of each field with the reference, also with solids among the fluid, and with the kernel that is a
+/* Compares curvatures of each field with the reference, with solids among the fluid. In the last run, the kernel is a
  * product of one-dimensional kernels. One point in 100 may differ, because differences are wrong where W'' jumps. */
 static void test_any_field(void** state)
 {

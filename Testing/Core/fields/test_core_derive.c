@@ -70,8 +70,8 @@ static void derive_standard(const particle_set* set, int64_t i, double gradient[
   }
 }
 
-/* Checks that the standard form equals derive_standard's sum, also with solids, whose values play
- * no part. */
+/* Checks that the standard form equals derive_standard's sum; solids have no gradient, and their
+ * values (NaN) play no part. */
 static void test_standard_form(void** state)
 {
   CORE_SET set = core_make_random(2500, 9, 0.7, 2, 4);
@@ -99,8 +99,8 @@ static void test_standard_form(void** state)
   }
 }
 
-/* Checks groups of one particle, two, three in a plane, and four nearly in a plane: no matrix can be inverted. The four
- * span a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
+/* Checks groups of one particle, two, three in a plane, and four nearly in a plane: the correction's matrix cannot be
+ * inverted. The four span a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
 static void test_too_few_neighbours(void** state)
 {
   CORE_SET set = particle_set_make(10);

@@ -209,7 +209,7 @@ static void test_uniform_in_a_plane(void** state)
       {
         turned.points[p / 3 * 3 + to[p % 3]] = cases[i].section.points[p];
       }
-      /* When axes are exchanged in an odd order, a rectangle's normal, the cross product of its edges, changes sign. */
+      /* For axis 1, `to` is an odd permutation: a rectangle's normal, the cross product of its edges, changes sign. */
       const double sign = turned.kind == MCOR_SECTION_RECTANGLE && axis == 1 ? -1 : 1;
       mcor_flux_reading r = flux_of(*state, &input, &options, &turned);
       check_reading(
@@ -233,7 +233,7 @@ static void test_uniform_in_a_plane(void** state)
 
 /* ---- integrals of samples ---- */
 
-/* Gauss's points and weights on [-1, 1]. */
+/* Gauss's three points on [-1, 1], and the share that each point has in the integral. */
 static const double gauss_at[3] = { -0.7745966692414834, 0, 0.7745966692414834 };
 static const double gauss_share[3] = { 5 / 18.0, 8 / 18.0, 5 / 18.0 };
 

@@ -61,7 +61,7 @@ static double length_of(const mcor_gauge_line* line)
 }
 
 /* Compares the reading of a line with the crossings that dense samples find. A pair of crossings may be missing or
- * added where the weight sum between them leaves the level by less than its error. */
+ * added where the weight sum between them differs from the level by less than the sum's error. */
 static void check_line(const oracle_field* field, const mcor_gauge_line* line,
   const mcor_gauges* gauges, int64_t number, double step, gauge_counts* counts)
 {

@@ -33,7 +33,7 @@ static double line_integral(const column* c, double x, double y, double reach, i
   {
     for (int g = 0; g < 5; ++g)
     {
-      /* Points of integration are denser near the particle, where w may have a cusp. */
+      /* Except for M'4, points of integration are denser near the particle, where w may have a cusp. */
       const double at_end = (i + 0.5 + 0.5 * gauss_at[g]) / panels;
       const double t = c->kernel == ORACLE_M_PRIME_4 ? cbrt(at_end) : at_end, z = reach * t * t * t;
       for (int sign = -1; sign <= 1; sign += 2)
@@ -150,7 +150,7 @@ static double error_of(const mcor_projection* view, const double* image, int ste
   return most;
 }
 
-/* Returns an input that has masses in the place of volumes. */
+/* Returns an input that has masses in the place of volumes, and no scalar. */
 static mcor_input input_of(const particle_set* set)
 {
   mcor_input input = core_input(set);
@@ -380,7 +380,7 @@ static void test_weights(void** state)
   CORE_FAILS(*state, MCOR_INVALID_ARGUMENT, mcor_project(*state, &input, &options, &view, &by_mass),
     "WEIGHT_IN_BUFFER");
   view.weight = core_array(weight, 1);
-  input.mass = core_array(weight, 1); /* Masses would not replace volumes, since these are given. */
+  input.mass = core_array(weight, 1); /* The weights are the masses, so m replaces V B. */
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &by_mass));
   int seen = 0, empty = 0;
   for (int p = 0; p < mean.size[0] * mean.size[1]; ++p)

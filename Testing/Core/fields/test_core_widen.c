@@ -50,9 +50,10 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* Returns the factor of particle j's smoothing length: the largest of 1, 1.2, ... 2 at which j's weight sum exceeds iso
- * by a margin, plus part of the step to the next. Few neighbours bring it near 1. If all are on one side, the margin is
- * larger for few, and may be negative for many. *one_sided: 1 for many on one side, 0 for few, or on all sides. */
+/* Returns particle j's factor: the largest of 1, 1.2, ..., 2 at which j's weight sum exceeds iso by a margin, plus part
+ * of the step to the next. Few neighbours bring the factor near 1. With all neighbours on one side, the margin is
+ * larger for few neighbours, and may be negative for many. *one_sided: 1 for many on one side, 0 for few or on all
+ * sides. */
 static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };
@@ -168,7 +169,7 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
 }
 
 /* Checks the surface in 64 cases. Each bit of a case's number adds a property: a scalar, computed volumes, periods,
- * lengths that differ, solids. In the last cases particles lie in a plane. */
+ * lengths that differ, solids, particles in a plane. */
 static void test_surface(void** state)
 {
   CORE_SET set = make_scene(8, 0.24, 5);
@@ -280,7 +281,7 @@ static void test_levels_and_reuse(void** state)
   }
 }
 
-/* Checks a context whose first call has no particle, so that no kernels are chosen. */
+/* Checks a context whose first call has no particle, so that no OpenCL program is chosen. */
 static void test_no_particle(void** state)
 {
   (void)state;

@@ -8,8 +8,8 @@
 
 #include <float.h>
 
-/* Cube roots of cubes must be exact, other cube roots right to within two units of rounding, and all must have the same
- * bits on every machine. */
+/* Cube roots of cubes of whole numbers must be exact, other cube roots right to within two units of rounding, and all
+ * must have the same bits on every machine. */
 static void test_cube_root(void** state)
 {
   uint64_t seed = 34;
@@ -61,8 +61,8 @@ static uint64_t hash_of(mcor_context* context, const particle_set* set, double i
   return core_hash(&surface);
 }
 
-/* Makes `count` particles in few cells of the search grid, `coincident` of them at one place, and 40 others. Checks that two
- * orders of the particles, in both forms of the kernels, give the same bits. */
+/* Makes `count` particles in few cells of the search grid, `coincident` of them at one place, and 40 others. Checks
+ * that two orders of the particles, with the OpenCL code for CPUs and for GPUs, give the same bits. */
 static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int coincident)
 {
   CORE_SET set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
@@ -88,7 +88,7 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
     count, coincident);
 }
 
-/* Checks cells that hold more particles than one work-item sorts, and more coincident ones. */
+/* Checks cells with about as many particles, spread or in one place, as one work-item sorts, and with more. */
 static void test_crowds(void** state)
 {
   static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },

@@ -28,8 +28,7 @@ static const char source[] =
   "  out[5 * i + 4] = MCOR_GET(gradient[2], MCOR_LANES - 1) * MCOR_NORM;\n"
   "}\n";
 
-/* Evaluates the kernel above for h = 1 / inv_h at `offsets`, which are floats or doubles as the precision says. Free
- * the result. */
+/* Runs test_kernel for h = 1 / inv_h at `offsets`, which are floats or doubles as `precision` says. Free the result. */
 static void* evaluate(mcor_context* context, mcor_sph_kernel kernel, mcor_type precision,
   const void* offsets, int count, double inv_h)
 {

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests inputs at the limits: far apart, at one point, of any magnitude, exactly at a threshold. */
+/* Tests inputs at the limits: far apart or at one point, scalars of any magnitude, thresholds exactly met. */
 
 #include "core_fixture.h"
 
@@ -68,8 +68,8 @@ static void test_far_reach(void** state)
   }
 }
 
-/* Checks that the unit of the scalar changes no number of points or cut vertices, and that every cut
- * vertex lies on the iso value in any unit. */
+/* Checks that the unit of the scalar changes no number of points or cut vertices, and that the exact position of every
+ * cut vertex is found in any unit. */
 static void test_magnitude(void** state)
 {
   const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };
@@ -194,7 +194,7 @@ static void test_plateau(void** state)
   }
 }
 
-/* If a kernel has negative lobes, the sum of weights may be 0 or less, so that there is no mean. */
+/* If an SPH kernel has negative lobes, weights at a particle may sum to 0 or less, which gives no volume. */
 static void test_no_density(void** state)
 {
   const double iso = 0.5;
@@ -221,8 +221,8 @@ static void test_no_density(void** state)
   surface = core_extract(*state, &input, &options);
 }
 
-/* Smoothing lengths from 1 to 1024 with cubes for the smallest make a lattice of 10^12 cells. The surface must be
- * closed, and the value at all vertices must be iso. */
+/* With smoothing lengths from 1 to 1024, and cubes that suit the smallest, the lattice has 10^12 cells. The surface
+ * must be closed, and the value at all vertices must be iso. */
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");

@@ -113,7 +113,7 @@ static void test_volumes(void** state)
     CORE_CHECK(strcmp(used, cases[c].used) == 0, cases[c].file, cases[c].given, used);
     CORE_CHECK(cases[c].unused ? core_tells(&found.unused, cases[c].unused) : !found.unused.text,
       cases[c].file, cases[c].given, found.unused.text);
-    /* Masses and densities are found even if volumes are given. */
+    /* Masses are found even if volumes are given. */
     assert_int_equal(mcor_is_given(&found.views[MCOR_ROLE_MASS]),
       strpbrk(cases[c].file, "m") || strpbrk(given, "mM"));
   }

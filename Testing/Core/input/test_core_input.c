@@ -464,7 +464,7 @@ static void test_bad_products(void** state)
   expect_good(*state);
 }
 
-/* Checks that the message on values too small for a computed volume does not blame the kernel. */
+/* Checks that the message on values too small for a computed volume does not blame the SPH kernel. */
 static void test_computed_volumes(void** state)
 {
   DATA("MASS_TOO_SMALL|particle 5", call.input.volume = (mcor_array){ 0 };
@@ -543,7 +543,7 @@ static void repeat(bad_call* call, double length, double from)
   }
 }
 
-/* Checks that the message names the particle with the extreme value that is the cause. */
+/* Checks that the message names the cause: an extreme smoothing length, far places, or an unsuitable period. */
 static void test_outliers(void** state)
 {
   CAPACITY("GRID_TOO_LONG|along x;|Particle 7 has a smoothing length of 1.3e-06|median is 1.3",
@@ -560,8 +560,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* Checks when a free surface is suggested: for a full cube, if it is a liquid or has solids; for a cube without a part
- * of one octant, always. There are enough particles for several threads. */
+/* Checks when a free surface is suggested: for a full cube of particles, only if they are a liquid or have solids among
+ * them; for a cube without a part of one octant, always. There are enough particles for several threads. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

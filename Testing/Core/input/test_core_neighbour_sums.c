@@ -40,7 +40,7 @@ static double sum_of_all(const particle_set* set, const mcor_options* options, i
   return sum;
 }
 
-/* Makes particles in clusters, so that smoothing lengths vary by a factor of 100. */
+/* Makes particles in clusters, so that smoothing lengths vary by a factor of more than 20. */
 static particle_set make_clusters(int64_t count, int dimension, uint64_t seed)
 {
   particle_set set = particle_set_make(count);
@@ -128,7 +128,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
-  /* A call may ask for the first few particles' lengths only, with all particles as neighbours. Ignored particles must
+  /* A call may ask for the first few particles' lengths only, with all particles as neighbours. Absent particles must
    * change nothing. */
   input = core_input(&set);
   const int64_t part = count / 3;

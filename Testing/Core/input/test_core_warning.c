@@ -155,7 +155,7 @@ static void test_neighbours(void** state)
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
          call.options.vertex_threshold = 0); /* nothing is unusual here */
-  /* Without any neighbour, the warning suggests no kernel. */
+  /* Without any neighbour, the warning suggests no SPH kernel. */
   warning_call alone;
   begin_call(&alone);
   alone.input.smoothing_length = far_off;

@@ -36,8 +36,8 @@ static void smooth_surfaces(void** state)
   core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
 }
 
-/* Checks a noisy scalar of particles of all sizes side by side: levels change everywhere and edges
- * are pinched. */
+/* Checks a noisy scalar of particles of all sizes side by side: levels change everywhere, and some
+ * edges are pinched (have two vertices). */
 static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;
@@ -57,7 +57,7 @@ static void rough_surfaces(void** state)
   core_check_cuts(*state, "M'4, preview", &input, &options);
 }
 
-/* Returns the particles whose supports reach the box after it is enlarged by six cubes of the particle's level. */
+/* Returns the particles whose supports reach the box enlarged on all sides by six cubes of the particle's level. */
 static particle_set take_reaching(
   const particle_set* set, const double box[6], const mcor_globals* globals, double cube)
 {

@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests gauges and fluxes on several ranks, which are threads: they must equal the values of one process to the last
- * bit, whichever rank owns which part of a line or section. */
+/* Tests gauges and fluxes on several ranks, which are threads. All values must equal the values of one process to the
+ * last bit, whichever rank owns which part of a line or section. */
 
 #include "core_ranks.h"
 
 #define LINES 90
 #define SECTIONS 4
 
-/* Makes a block of particles with holes, in random order. If has_solids is set later, every seventh particle is a
- * solid. */
+/* Makes particles at random places, so sparse that there are holes. If has_solids is set later, every seventh particle
+ * is a solid. */
 static particle_set make_sparse(void)
 {
   particle_set set = core_make_random(2500, 12, 0.6, 1.0, 5);

@@ -74,8 +74,8 @@ static void check_images(
   check_same(name, &surface, &expected);
 }
 
-/* With MCOR_PAIRS, the surface starts between particles on different sides of the iso value. Here they are in one place
- * alone, away from the period's sides. The surface must grow from there through the sides until it is whole. */
+/* With MCOR_PAIRS, the surface starts between particles on different sides of the iso value. Here such pairs are in one
+ * place alone, away from the period's sides. From there the surface must grow through the sides until it is whole. */
 static void pairs_grow_around(void** state)
 {
   const double iso = 0.2, along[6] = { 0, 12, 0, 8, 0, 0 };
@@ -300,7 +300,8 @@ static void large_sides(void** state)
   assert_int_equal(report.boundary_edges, 0);
 }
 
-/* Checks that a box across a side of the period has the same surface as in a period moved so that no side cuts it. */
+/* Checks that a box across a side of the period has the same surface if the period is moved so that no side cuts the
+ * box. */
 static void test_box_across(void** state)
 {
   static const double periods[2][6] = { { 0, 12, -3, 7, 0, 11 }, { -6, 6, -5, 5, 0, 11 } };

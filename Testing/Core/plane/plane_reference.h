@@ -37,7 +37,8 @@ plane_sample plane_evaluate(const plane_field* field, double u, double v);
  * sides, how lines join these vertices, and all vertices with the field. The test fails if a vertex is missing, or if
  * there is one too many. Returns how many sides are crossed. */
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
-/* Checks the lines' directions, length and normals, and that each point is used once. closed: all must be closed. */
+/* Checks the lines' directions, length and normals, and that each point is used once. closed: all lines must be
+ * closed. */
 void plane_check_lines(const plane_field* field, const mcor_surface* surface, int closed);
 
 /* Returns options for one iso value and lines that are not trimmed. */

@@ -18,7 +18,7 @@ typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */
   int axis, rising;
-  /* valid: a square at the edge is valid. close: rounding may decide whether it is valid. */
+  /* valid: a square at the edge is valid. close: rounding may decide a node of such a square. */
   int valid, close;
   int found;
   int64_t next; /* the edge where the line that begins here ends, or -1 */
@@ -80,8 +80,8 @@ static int64_t plane_edge_at(
   return *place;
 }
 
-/* Adds a square. Its nodes are taken counter-clockwise, so the square is on the left of the walk. half: bits of the
- * sides that have a node in their middle (below, right, above, left). */
+/* Adds a square, unless its centre is outside the field's region. Its nodes are visited counter-clockwise. half: bits
+ * of the sides (below, right, above, left) that have a node in their middle. */
 static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t size, int half)
 {
   static const int corner[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 }, { 0, 0 } };
@@ -125,8 +125,8 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
       s->edges[edge[i]].close |= close;
     }
   }
-  /* A line cuts off each run of nodes above iso: it begins where the walk leaves the run, and ends where the walk
-   * entered it. */
+  /* A line cuts off each run of nodes above iso. In the order of the nodes, the line begins at the crossing behind the
+   * run, and ends at the crossing before the run. */
   for (int i = 0; i < count && valid; ++i)
   {
     if (edge[i] >= 0 && node[i].above)

@@ -149,7 +149,7 @@ static fill_report fill_check(const plane_field* field, const mcor_surface* s)
   return report;
 }
 
-/* Fails unless each point lies where its data say: on an iso value, on a threshold, or between. */
+/* Fails unless each point lies where its data say: on an iso value, on a threshold, or between two iso values. */
 static void fill_check_points(const plane_field* f, const mcor_surface* s)
 {
   const mcor_options* o = f->options;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compares lines of particles in a plane with a reference that has all squares. */
+/* Compares the isolines of particles in a plane with a reference that evaluates all squares. */
 
 #include "core_period.h"
 #include "mcor_plane.h"

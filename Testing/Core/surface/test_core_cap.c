@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests caps: at the sides of periods and boxes they close the surface, and leave its own points and triangles
- * unchanged. */
+/* Tests caps, which close the surface at the sides of periods and boxes. The surface's own points and triangles must
+ * not change. */
 
 #include "core_parts.h"
 #include "core_period.h"
@@ -120,8 +120,8 @@ static int ends_at(const mcor_surface* s, int32_t p)
   return s->boundary_flag[p] % 8 != 0 || s->weight_sum[p] < 0.5f;
 }
 
-/* Checks a surface with caps against the same surface without. is_closed: nothing is trimmed, so
- * the surface must be closed. */
+/* Checks a surface with caps against the same surface without caps. is_closed: nothing is trimmed,
+ * so the surface must be closed. */
 static void check_caps(
   mcor_context* context, const particle_set* set, mcor_options options, int is_closed)
 {

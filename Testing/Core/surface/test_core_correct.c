@@ -115,8 +115,8 @@ static void test_reported_numbers(void** state)
   assert_true(preview.statistics.correction_max == 0);
 }
 
-/* More Newton steps must never make the worst residual larger, and their limit must never be
- * exceeded. */
+/* More Newton steps must never make the worst residual larger, and there must not be more steps
+ * than the limit allows. */
 static void test_iteration_limit(void** state)
 {
   CORE_SET set = core_make_block(8, 0.3, 4, steep);

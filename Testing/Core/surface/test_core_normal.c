@@ -70,8 +70,8 @@ static void test_triangle_normals(void** state)
     !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle);
 }
 
-/* Compares attributes with the oracle's weighted means: a constant, 9 components (a kernel sums 4 at a time), a linear
- * function in single precision, and a vector. */
+/* Compares attributes with the oracle's weighted means: a constant, 9 components (the device sums 4 at a time), a
+ * linear function in single precision, and a vector. */
 static void check_attributes(mcor_context* context, int solids)
 {
   CORE_SET set = core_make_block(10, 0.2, 3, core_ball);
@@ -179,8 +179,7 @@ static void test_nearest(void** state)
   check_nearest(*state, 4, 0);
 }
 
-/* Checks that the greatest terms of area and volume are found, whichever slices of the triangles
- * they are in. */
+/* Checks that the greatest terms of area and volume are found, whichever thread's slice of the triangles has them. */
 static void test_greatest_terms(void** state)
 {
   enum

@@ -33,8 +33,7 @@ static void test_thresholds(void** state)
   assert_int_equal(surface.triangle_count, 0);
 }
 
-/* The limit of vertices counts the surface's own vertices and those that trimming adds at the
- * border. */
+/* The limit of vertices counts the surface's own vertices and the vertices that trimming adds at the border. */
 static void test_vertex_limit(void** state)
 {
   mcor_context* context = *state;

@@ -11,7 +11,7 @@
  * Cubes of one size are sorted by key, like blocks, so mcor_find_block finds them. */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube of the largest size, number i of all. Writes the cube's key. */
+/* One work-item = cube number i of the largest size. Writes the cube's key. */
 __kernel void mcor_block_all(
   const int count, __global const mcor_rung* rungs, const int level, __global ulong* keys)
 {
@@ -23,7 +23,7 @@ __kernel void mcor_block_all(
 #if MCOR_OF_FIELD
 /* One work-item = one cube, 32 << level nodes long: cube index[item], or cube `item` if `index` is
  * NULL. Reads the particles that reach the cube. Writes the cube's state: on which sides of the iso
- * value its nodes may be. A cube without a node of the box's cells is void. */
+ * value its nodes may be. A cube without a node of a cell in the box first_x to last_z is void. */
 __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const int* index,
   __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS, MCOR_BOX_PARAMS,
   __global uchar* states)
@@ -100,8 +100,8 @@ __kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
   }
 }
 
-/* One work-item = one brick that has a slot. If the values of the brick's nodes are known, requests
- * a slot for the brick again. */
+/* One work-item = one brick that has a slot, i.e. a place for its nodes' values. If these values
+ * are known, requests a slot for the brick in the new set of bricks, too, to keep the values. */
 __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
   __global const int4* bricks, __global const ulong* known, __global uint* brick_bits)
 {

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The bound of complete seeds [III-C]: finds, from the particles that reach a box, whether all
+/* Bounds the field in a box [III-C]: finds, from the particles that reach the box, whether all
  * nodes in the box certainly have too low weights (void), are above the iso value, or below it.
  *
  * With c_j = V_j norm / h_j^3 * f_j, where f_j is A_j - iso (Shepard), A_j (sum) or 1 (weight sum),
@@ -18,8 +18,8 @@
  * that are shorter or longer by this error. A slightly larger box covers the rounding of positions.
  * Given the distance, the relative error of w is less than 96 u, because no kernel subtracts large
  * terms where w is small. The error of a sum of n terms, each a product of a few factors, is at
- * most (n + 16) u of the sum of the absolute terms, in any order, to first order. Hence the errors
- * of the bound and of a node's value together are at most
+ * most about (n + 16) u times the sum of the absolute terms, whatever the order of the terms. Hence
+ * the errors of the bound and of a node's value together are at most
  *
  *   k / (1 - k) * sum |c_j| * greatest |w_j|,  k = (2 n + 256) u,
  *

@@ -31,7 +31,7 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
   return some & ~all;
 }
 
-/* Returns the cells whose corners are all valid, and on both sides of the iso value. */
+/* Returns the cells whose corners are all valid, but not all on the same side of the iso value. */
 ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
 {
   ulong some = 0, all = ~0UL, usable = ~0UL;
@@ -74,8 +74,8 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
-/* Returns how many vertices of a brick lie on edges from nodes before n. e: the brick's edge
- * masks. */
+/* Returns how many vertices of a brick lie on edges whose lower node has a number below n. e: the
+ * brick's edge masks. */
 int mcor_edge_rank(__global const ulong* e, int n)
 {
   const ulong below = (1UL << n) - 1;
@@ -134,7 +134,7 @@ int mcor_march_case(const ulong* corners, int cell)
 
 /* Returns the index of the row (a way to triangulate) for a cell. The ambiguous faces of the cell's
  * case have the numbers k = 0, 1, ... The result is the index of the case's first row, plus 2^k for
- * each face k that joins its nodes above the iso value. corners: see mcor_cell_corners. */
+ * each face k on which the nodes above the iso value are joined. corners: see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -163,8 +163,8 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
 #define MCOR_CUT_ARGS resolved, neighbours, decisions, cases, rows
 
 /* Returns the row by which a cell without finer nodes is triangulated. If the topology is resolved,
- * the field's decisions choose the row. Else no ambiguous face joins its nodes above the iso value.
- * Adds 1 to *tunnels if the cell has a tunnel. */
+ * the field's decisions choose the row. Else the row joins the nodes above the iso value on no
+ * ambiguous face. Adds 1 to *tunnels if the cell has a tunnel. */
 __global const mcor_cell_row* mcor_cell_cut(
   const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell, int* tunnels)
 {

@@ -23,7 +23,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 }
 
 /* If particles fill less than this share of the space around a brick, the brick counts as near the
- * surface. */
+ * surface, and the proof fails. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
 /* The proof reads a particle only at nodes within this share of the particle's support. */
@@ -35,9 +35,9 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
 /* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
- * above the iso value. `at` is the lowest point, `step` the distance between points along each
- * axis. The terms are added in another order than where a node is evaluated; the margin of 1.0001
- * is larger than the difference of the sums. */
+ * above the iso value. at: the lowest point, in cubes from the query's origin; step: the distance
+ * between points along each axis. The terms are added in another order than where a node is
+ * evaluated; the margin of 1.0001 is larger than the difference of the sums. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();
@@ -105,11 +105,12 @@ bool mcor_sides_are_inside(
 }
 #endif
 
-/* Returns MCOR_ABOVE if close particles alone lift all nodes of a brick above the iso value, else
- * MCOR_EXAMINE. A particle is close if a node lies within half the particle's support. About an
- * eighth of all particles in reach are close, and make up most of the weight sum. Other particles
- * can only add to the sum: w >= 0, rounding is monotone, and terms keep their order. The margin of
- * 1.0001 allows for a compiler that rounds the same term differently elsewhere.
+/* Returns MCOR_ABOVE if close particles alone lift all nodes of a brick above the iso value. If
+ * they do not, or fill less than MCOR_INSIDE_FILLED of the space, returns MCOR_EXAMINE. A particle
+ * is close to nodes within half its support. About an eighth of the particles that reach a node are
+ * close to the node, and make up most of the weight sum. Other particles can only add to the sum:
+ * w >= 0, rounding is monotone, and terms keep their order. The margin of 1.0001 allows for a
+ * compiler that rounds the same term differently elsewhere.
  *
  * beside: whether the brick is a leaf beside finer or coarser leaves. If so, the nodes on the
  * leaf's far sides are tested, too; if this test fails, MCOR_OPEN_SIDES is added to MCOR_ABOVE.

@@ -12,10 +12,10 @@
  *
  * A leaf A is beside other levels if a finer leaf touches A, or if one of these next leaves is
  * larger. Then only A's own state counts: A has no surface if the state is certain and also holds
- * for the nodes on A's far sides. */
+ * for the nodes on A's far sides (towards larger x, y or z). */
 
-/* Returns the bits of the 8 bricks of a row. Each block has MCOR_BLOCK_ROWS rows. row: counts the
- * rows of all blocks. */
+/* Returns the bits of the 8 bricks of a row. Each block has MCOR_BLOCK_ROWS rows. row: the row's
+ * number among the rows of all blocks. */
 #define MCOR_BLOCK_ROWS (MCOR_BLOCK_BRICKS / 8)
 uint mcor_row_of(__global const uint* bits, int row)
 {
@@ -35,8 +35,8 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 
 /* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are
  * split into finer bricks. Marks a leaf of the row as beside other levels if any brick around the
- * leaf is split, or if a neighbour at higher coordinates is neither a leaf nor split: a larger leaf
- * is there. In a plane, neighbours at higher z do not count. */
+ * leaf is split, or if a neighbour at higher coordinates is neither a leaf nor split, because it
+ * may be part of a larger leaf. In a plane, neighbours at higher z do not count. */
 __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
   __global const uint* split, __global uint* beside)
 {
@@ -73,9 +73,9 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
 /* Returns on which sides of the iso value valid nodes of leaf m lie. With d = 0, all nodes of the
- * leaf count. Else only the nodes count that cells of another leaf use, too: the leaf that is d
- * (bits x, y, z) down from leaf m. If the nodes' values are not known, returns the leaf's state. If
- * brick m is no leaf, returns MCOR_EXAMINE. */
+ * leaf count. With another d, only the nodes count that leaf m shares with the leaf one step down
+ * along the axes in d (bits x, y, z). If the nodes' values are not known, returns the leaf's state.
+ * If brick m is no leaf, returns MCOR_EXAMINE. */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))
@@ -117,8 +117,8 @@ __kernel void mcor_leaf_choose(
       sides |= mcor_leaf_sides(
         MCOR_KNOWN_ARGS, mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, mcor_up(d)), d);
     }
-    /* No branch may depend on `sides` after the loop: LLVM 18 would move code into it, and PoCL 6.0
-     * then ends the process ("Instruction Combining did not reach a fixpoint"). */
+    /* No branch may depend on `sides` after the loop: LLVM 18 would move code into such a branch,
+     * and PoCL 6.0 would end the process ("Instruction Combining did not reach a fixpoint"). */
     found |= (uint)(open | (sides == MCOR_EXAMINE)) << x;
   }
   atomic_or(chosen + (m >> 5), found << (m & 31));

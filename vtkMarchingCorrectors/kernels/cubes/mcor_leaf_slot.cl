@@ -3,7 +3,7 @@
 
 /* Adaptive cubes: the nodes of leaves that may have surface. Values and masks of a leaf's nodes are
  * in slots of several bricks: the leaf itself, the bricks that own the nodes on the leaf's far
- * sides, and finer bricks around the leaf. */
+ * sides (towards larger x, y or z), and finer bricks around the leaf. */
 
 #define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
 

@@ -12,8 +12,8 @@
 /* One work-item = one leaf. Reads the masks of the leaf's nodes. Treats only cells that are not
  * plain. Removes such a cell from `used` if it is not valid at all nodes, or if all its nodes are
  * on one side of the iso value. Marks the edges of the cells that stay. Writes to the leaf's slot
- * how many triangles (in a plane, lines) these cells have. A polygon of the surface may lie in a
- * single face of its cell; adds the number of such polygons, in owned cells, to flat_loops. */
+ * how many triangles (in a plane, lines) these cells have. Adds to flat_loops how many polygons of
+ * the surface, in owned cells, lie in a single face of their cell. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)

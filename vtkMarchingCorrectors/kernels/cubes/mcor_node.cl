@@ -4,8 +4,8 @@
 /* Evaluation of the field at nodes. This file has mcor_node_sum for GPUs, mcor_node_lanes.cl has it
  * for CPUs. */
 
-/* MCOR_ITEM_NODES: how many nodes one work-item evaluates. With one lane, this is 1. With several
- * lanes, it is all 64 nodes of a brick, in MCOR_NODE_GROUPS groups of MCOR_LANES nodes.
+/* MCOR_ITEM_NODES: how many nodes one work-item evaluates. With one lane, the number is 1. With
+ * several lanes, it is 64, the nodes of a brick, in MCOR_NODE_GROUPS groups of MCOR_LANES nodes.
  * MCOR_ITEM_EXTENT: how many cubes lie between the first and the last of these nodes along each
  * axis. */
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
@@ -13,7 +13,7 @@
 #define MCOR_ITEM_EXTENT (MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1)
 
 /* Sums at a group of nodes, one node in each lane: s = sum V (A - A0) W, w = sum V W, and, with
- * solids, the trimming weight t. A0 is subtracted from all particles' values, see mcor_grid. */
+ * solids, the trimming weight t. A0 is a shift of all particles' values. */
 typedef struct
 {
   realv s, w, t;
@@ -99,8 +99,8 @@ MCOR_ONE_COPY mcor_query mcor_node_query(
   return query;
 }
 
-/* Writes the field's value and the trimming weight (-1: the value is not valid) of the node whose
- * sums are in a lane. */
+/* Writes the field's value (less A0) and the trimming weight (-1: there is no Shepard mean) of the
+ * node whose sums are in a lane. */
 void mcor_sums_store(
   const mcor_node_sums* sums, int lane, __global real* value, __global real* weight)
 {

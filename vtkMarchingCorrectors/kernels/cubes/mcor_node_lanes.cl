@@ -3,9 +3,9 @@
 
 /* Sums at the nodes of a brick, in groups of nodes, see mcor_group_of. */
 
-/* mcor_group_place returns the nodes of a group, in cubes from the query's origin. A particle's
- * weights at the nodes are computed in two steps, mcor_group_distance and mcor_group_weight, as by
- * mcor_distance and mcor_weight. */
+/* mcor_group_place returns the nodes of a group, in cubes from the query's origin.
+ * mcor_group_distance and mcor_group_weight compute a particle's weights at the nodes in two steps,
+ * as mcor_distance and mcor_weight do. */
 #if MCOR_TENSOR
 /* A tensor kernel is a product of three factors w, one for each axis. The nodes of a group have two
  * different x, two different y and MCOR_GROUP_Z different z. One evaluation gives w for all these

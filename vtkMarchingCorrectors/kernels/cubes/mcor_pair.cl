@@ -193,8 +193,8 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
 /* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. Marks the
  * cells on the lines between these particles and their partners. Most particles are far from the
  * surface. So the kernel first tests whether values on both sides of the iso value occur around the
- * particles: once for all particles up to where x descends, then for each group. Only if both tests
- * succeed are the particles around a group read. */
+ * particles: once for successive particles whose x does not descend, then for each group. Only if
+ * both tests succeed are the particles around a group read. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

@@ -13,8 +13,8 @@
  * decides depends on the leaves alone, so cells on both sides agree. */
 
 /* Whether the field at a sample, i.e. a point where the field is evaluated, is above the iso value.
- * value: the field minus the iso value, or 1e30 if no particle reaches the sample, see
- * mcor_evaluate; then the field is neither above nor below. */
+ * value: the field minus the iso value; 1e30 if there is no Shepard mean at the sample, see
+ * mcor_evaluate. Without a mean, the field is neither above nor below. */
 bool mcor_sample_is_above(real value)
 {
   return value >= 0 && value != (real)1e30f;
@@ -165,8 +165,8 @@ real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, re
 
 /* Finds the saddles, within the cell, of the trilinear interpolant of corner values f, and returns
  * their number. x, xy, ..., xyz are the interpolant's coefficients. At a saddle all three
- * derivatives are 0: with P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy this means Q R = -a, P R =
- * -b, P Q = -c. */
+ * derivatives are 0. Then Q R = -a, P R = -b, P Q = -c, with P = xyz X + yz, Q = xyz Y + xz,
+ * R = xyz Z + xy, and a, b, c as below. */
 int mcor_topology_find_saddles(const real* f, real4 saddle[2])
 {
   const real x = f[1] - f[0], y = f[2] - f[0], z = f[4] - f[0];

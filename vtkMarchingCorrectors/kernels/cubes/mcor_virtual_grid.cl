@@ -3,8 +3,8 @@
 
 /* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks, each with 4 x 4 x 4 nodes, exist
  * where the surface may be. A brick that is needed has a slot for the values and masks of its
- * nodes. Blocks are sorted by key. Bricks are sorted by block, then by z, y, x. A slot's number is
- * the number of needed bricks before its brick, so it depends on the set of bricks alone. */
+ * nodes. Blocks are sorted by key. Bricks are sorted by block, then by z, y, x. The number of a
+ * brick's slot is the number of needed bricks before this brick. */
 
 #define MCOR_BLOCK_PARAMS                                                                          \
   const int block_count, const int block_shift, __global const mcor_rung *rungs,                   \
@@ -139,8 +139,8 @@ ulong mcor_brick_key(__global const mcor_rung* rungs, int4 brick)
     (ulong)mcor_place_in_block(brick);
 }
 
-/* Requests the brick with number m. Returns true if nothing had requested it before. The brick has
- * no slot until the host has given slots to all requested bricks. */
+/* Requests the brick with number m. Returns whether this is the first request for the brick. The
+ * brick has no slot until the host has given slots to all requested bricks. */
 bool mcor_request_brick(__global uint* brick_bits, int m)
 {
   const uint bit = 1u << (m & 31);

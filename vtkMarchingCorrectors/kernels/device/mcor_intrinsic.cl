@@ -18,8 +18,8 @@
 #define MCOR_FOR_CPU 0
 #endif
 
-/* MCOR_LOAD and MCOR_LOAD_FIX read MCOR_LANES elements from p[i] on, MCOR_STORE writes them. On
- * CPUs, MCOR_LOAD_FIX does not use vloadn, because compilers may split it into several accesses. */
+/* MCOR_LOAD and MCOR_LOAD_FIX read MCOR_LANES elements from p[i] on; MCOR_STORE writes as many. On
+ * CPUs, MCOR_LOAD_FIX avoids vloadn, because compilers may split vloadn into several accesses. */
 #if MCOR_LANES == 1
 #define MCOR_LOAD(i, p) ((p)[i])
 #define MCOR_STORE(v, i, p) ((p)[i] = (v))

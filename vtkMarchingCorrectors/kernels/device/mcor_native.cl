@@ -70,8 +70,8 @@ MCOR_FUNCTION(double, convert_double, (long x), (double)x)
 MCOR_DEFINE_ATOMICS(int, min, max)
 MCOR_DEFINE_ATOMICS(uint, umin, umax)
 
-/* Defines a function for vectors R of n numbers of type T, by a loop over the numbers. Clang makes
- * one instruction of such a loop, but makes branches if the loop has a conditional. */
+/* Defines a function for vectors R of n numbers, by a loop over the numbers. Clang makes one
+ * instruction of such a loop, but makes branches if the loop has a conditional. */
 #define MCOR_LANES_FUNCTION(n, R, name, parameters, value)                                         \
   MCOR_DEFINE R name parameters                                                                    \
   {                                                                                                \

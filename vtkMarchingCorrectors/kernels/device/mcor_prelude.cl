@@ -29,8 +29,8 @@
 #define MCOR_WEIGHT_SUM 2
 
 /* Every device must give the same bits. Additions, multiplications and fma are rounded alike
- * everywhere. A compiler must not turn a multiplication and an addition into an fma. (fma is slow
- * on a device without an instruction for it.) */
+ * everywhere. A compiler must not turn a multiplication and an addition into an fma, which rounds
+ * once instead of twice. */
 #pragma OPENCL FP_CONTRACT OFF
 
 /* MCOR_ONE_COPY marks functions that have several callers, and are mostly called for many particles
@@ -103,7 +103,7 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
 #endif
 
-/* a * b + c, rounded once, in each lane; for loops over particles. */
+/* a * b + c, rounded once, in each lane. */
 #define MCOR_FMA(a, b, c) fma((realv)(a), (realv)(b), (realv)(c))
 
 /* Returns 0, 1, ... MCOR_LANES - 1. */

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature at a point: the curvature of the iso surface of a field f that goes through the point.
- * It is computed from the gradient g and the Hessian H of the SPH sum at the point. With the normal
- * n = -g / |g|, which points to lower values,
+/* Curvature at a point: the curvature of the field's iso surface through this point. It is computed
+ * from the gradient g and the Hessian H of the field at the point. With the normal n = -g / |g|,
+ * which points to lower values,
  *
  *   2 mean = div n = (g . H g - |g|^2 tr H) / |g|^3        Gaussian = g . adj(H) g / |g|^4
  *

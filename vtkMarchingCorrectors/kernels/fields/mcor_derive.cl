@@ -36,7 +36,7 @@ typedef struct
   realv slopes[MCOR_ARRAY_STEP][3]; /* sum V_j (A_j - A_i) grad_a W_ij of each array A */
 } mcor_derive_sums;
 
-/* Adds the particles of a reach to the sums. values: A_j; own: A_i; both fixed-point. */
+/* Adds the particles j that `reach` holds to the sums. values: A_j; own: A_i; both fixed-point. */
 void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
   const mcor_values* values, const fixv own[MCOR_ARRAY_STEP], mcor_derive_sums* sums)
 {

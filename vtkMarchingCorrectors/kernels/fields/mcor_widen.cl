@@ -95,9 +95,9 @@ typedef struct
   realv count, offset[3];
 } mcor_crowd;
 
-/* Finds c[l], the weight sum c(s) with factor s[l], for `levels` factors, the largest first. Sums
- * over the particles within `reach` h_j. Also finds the crowd unless it is NULL. Each lane has its
- * own reach, so its sum does not depend on the other lanes. */
+/* Finds c[l], the weight sums at the particles j with lengths s[l] h_j, for `levels` factors s, the
+ * largest first. Sums over the particles within `reach` h_j. Also finds the crowd unless `crowd` is
+ * NULL. Each lane has its own reach, so its sum does not depend on the other lanes. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
   realv* c, mcor_crowd* crowd)
@@ -276,9 +276,9 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
 }
 
-/* Whether all particles that may reach the query's box have the widest factor. Then the mean factor
- * in the box is the widest factor. This is the case for nearly all groups of particles, because
- * they are deep inside the fluid. */
+/* Whether all particles that may reach the query's box have the widest factor, so that the mean
+ * factor in the box is the widest factor. Nearly all groups of particles are deep inside the fluid,
+ * where the answer is yes. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -355,8 +355,8 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real i
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
  * mcor_widen_solve wrote for the listed ones. Writes to `outside` whether a particle is inside with
- * its own length, but outside with the factor: c(1) is at least the iso value, and c(factor) is
- * below it. */
+ * its own length (the weight sum is at least the iso value), but outside with the length times the
+ * factor (the weight sum is below the iso value). */
 __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   __global const real* sizes, __global const real* factor, __global const int* listed,
   __global int* outside)

@@ -9,7 +9,7 @@
  *   1 / sqrt(x) = y / sqrt(1 - e) = y (1 + e p(e))
  *
  * with p a minimax polynomial (error 2.4e-8). The result is off by about 1 ulp, and the same on
- * every device, unlike OpenCL's rsqrt. In double precision the root is exact to the last bit. */
+ * every device, unlike OpenCL's rsqrt. Double precision uses sqrt, which is correctly rounded. */
 #if !MCOR_DOUBLE
 realv mcor_rsqrt_guess(realv x)
 {

@@ -44,8 +44,8 @@ void mcor_tile_init(mcor_tile* tile)
   tile->complete = false;
 }
 
-/* Whether particles at (x, y, z) are within `share` of their support from a box. The margin covers
- * rounding; a particle that is kept without need adds exactly 0. */
+/* Whether particles at (x, y, z) are nearer to a box than `share` times their support. The margin
+ * of 1.0001 covers rounding; a particle that does not reach the box adds exactly 0. */
 fixv mcor_near_box(realv x, realv y, realv z, realv inv_h, const mcor_span* box, realv share)
 {
   const realv dx = fmax(fabs(x - box->center[0]) - box->half_size[0], (realv)0);
@@ -59,16 +59,16 @@ fixv mcor_near_box(realv x, realv y, realv z, realv inv_h, const mcor_span* box,
 #endif
 }
 
-/* Returns which of a tile's particles i, i + 1, ... are within `share` of their support from a
- * box. */
+/* Returns which of a tile's particles i, i + 1, ... are nearer to a box than `share` times their
+ * support. */
 fixv mcor_tile_near(const mcor_tile* tile, int i, const mcor_span* box, realv share)
 {
   return mcor_near_box(MCOR_TILE(tile, x, i), MCOR_TILE(tile, y, i), MCOR_TILE(tile, z, i),
     MCOR_TILE(tile, inv_h, i), box, share);
 }
 
-/* Lists the places in the tile of the particles within `share` of their support from a box. Returns
- * their number. */
+/* Lists the places in the tile of the particles that are nearer to a box than `share` times their
+ * support. Returns the number of these particles. */
 int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int* list)
 {
   int count = 0;

@@ -58,7 +58,7 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return some || first;
 }
 
-/* Is never called, because no tile is complete. */
+/* This function is never called, because no tile is complete. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
   mcor_tile_init(tile);

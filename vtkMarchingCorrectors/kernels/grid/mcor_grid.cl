@@ -125,8 +125,8 @@ bool mcor_grid_rank(
 }
 #endif
 
-/* Sorts the particles of several whole cells, each cell for itself. One call for several cells
- * takes less time than a call for each cell. keys, order and px point to the first particle of the
+/* Sorts the particles within each of several whole cells. One call for several cells takes less
+ * time than a call for each cell. keys, order and px point to the first particle of the
  * first cell. Returns the largest number of particles in a cell. */
 int mcor_grid_insert(
   __global const ulong* keys, MCOR_PARTICLES, __global int* order, __global fix* px, int count)
@@ -336,9 +336,9 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 }
 
 /* Returns the factor that makes up for a side without neighbours in the density of a particle: 1 +
- * 5/3 D^2 with D^2 = variance |g|^2 / n^2, where g and n are the sums `fluid` and `size`.
- * one_sided: 5/3 variance. Solids may fill the empty side, but not overfill it. So the share of the
- * sum `solids`, from 0 to 1, that makes |g| least is added to g. */
+ * 5/3 D^2 with D^2 = variance |g|^2 / n^2, where g and n are the sums `fluid` and `size`, and the
+ * variance is the SPH kernel's. one_sided: 5/3 variance. Solids may fill the empty side, but not
+ * overfill it. So g becomes g + share * solids, with the share from 0 to 1 that makes |g| least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;

@@ -22,8 +22,8 @@ typedef struct
 {
   int particle_count, level_count, bucket_shift;
   /* Queries, tiles and points measure lengths in cubes, or in cells of a level of adaptive cubes,
-   * which are view_edge cubes long. unit: a fixed-point unit, in this measure; units: 1 / unit. All
-   * three are powers of two. */
+   * which are view_edge cubes long. unit: a fixed-point unit, in this measure; units: 1 / unit.
+   * unit, units and view_edge are powers of two. */
   real unit, units, view_edge;
   real edge[3]; /* length of an edge, at most 1 */
   fix step[3];  /* length of an edge, from node to node, in fixed-point units */
@@ -37,7 +37,7 @@ typedef struct
   __global const real* inv_h;       /* 1 / (h scale * smoothing length), in cubes */
   __global const real* weight;      /* V norm / (scaled h)^3; 0 for solids */
   __global const real* trim_weight; /* V norm / (scaled h)^3, solids included */
-  __global const real* value;       /* A - A0 */
+  __global const real* value;       /* A - A0: the scalar, less a shift of all values */
 } mcor_grid;
 
 #define MCOR_GRID                                                                                  \
@@ -73,9 +73,9 @@ typedef struct
   fix origin[3]; /* positions in a tile count from here */
   mcor_span box; /* the same box */
   float radius;  /* in cubes; if below 0, -radius times each particle's own support */
-  /* Of the current level, in fixed-point units. cell_size: edges of a cell; first_cell: where cell
-   * 0 begins; slack: how far rounding may move a particle across a cell's face; reach2: squared
-   * reach; z2: squared distance of rows at z. */
+  /* Lengths for the current level, in fixed-point units. cell_size: edges of a cell; first_cell:
+   * where cell 0 begins; slack: how far rounding may move a particle across a cell's face; reach2:
+   * squared reach; z2: squared distance between the box and the rows at z. */
   float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
   bool has_many_rows; /* more rows are in reach than MCOR_MANY_ROWS */

@@ -160,8 +160,8 @@ __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, cons
   }
 }
 
-/* One work-item = one point. Reads the scanned flags. Writes where each group starts, and in the
- * last entry where the last group ends. */
+/* One work-item = one point. Reads the scanned flags of mcor_group_count. Writes where each group
+ * starts, and in the last entry where the last group ends. */
 __kernel void mcor_group_fill(
   const int first, const int count, __global const int* scanned, __global int* groups)
 {

@@ -45,7 +45,7 @@ MCOR_ONE_COPY void mcor_attribute_nearer(
 /* One work-item = one group of points. Writes the number of the fluid particle nearest to each
  * point; -1 if none is found. First looks among the particles that reach the point. Looks farther
  * if smoothing lengths differ, because a particle that does not reach the point may be nearer. Also
- * looks farther if no particle reaches the point: with a very low iso value of the weight, a
+ * looks farther if no particle reaches the point: if the iso value of the weight sum is very low, a
  * particle may reach only an end of the point's lattice edge. */
 __kernel void mcor_attribute_nearest(MCOR_GROUP_PARAMS, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)

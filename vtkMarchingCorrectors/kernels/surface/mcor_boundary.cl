@@ -11,7 +11,7 @@
  *
  *   M(x) = sum V (x_j - x) (outer product) grad W(x - x_j)
  *
- * M is about the identity where particles surround x, and singular where they do not. */
+ * M is about the identity where particles surround x. Where they do not, the eigenvalue is low. */
 
 typedef struct
 {

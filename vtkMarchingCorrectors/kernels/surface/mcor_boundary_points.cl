@@ -3,7 +3,7 @@
 
 /* The boundary eigenvalue at points; the functions for it are in mcor_boundary.cl. */
 
-/* One work-item = one group of points. Writes their boundary eigenvalues. */
+/* One work-item = one group of points. Writes the boundary eigenvalue at each point. */
 __kernel void mcor_boundary_points(
   MCOR_GROUP_PARAMS, __global const real4* offset, const int plane, __global real* eigenvalue)
 {

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, for MCOR_LANES edges
- * at a time. Vertices of a compact contour that are not on an edge move along a line instead. The
- * line is one cube long, in the gradient's direction at the vertex's start. */
+ * at a time. A vertex that is not on an edge, such as a merged vertex of a compact contour, moves
+ * along a line instead: one cube long, in the gradient's direction at the vertex's start. */
 
 /* Returns x / y, or -1 if y is 0. A step of this length leaves every bracket (interval that has the
  * root). No kernel makes an infinite value or a NaN, because compilers that relax arithmetic may
@@ -108,7 +108,6 @@ void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, rea
   mcor_points_bound(grid, from, to, points, query);
 }
 
-/* Returns the slope of the field along the edges. */
 realv mcor_edges_slope(const mcor_edges* e, const mcor_field_at* at)
 {
   const realv* g = at->field.gradient;
@@ -150,9 +149,9 @@ realv mcor_correct_near(realv slope, real iso)
   return fmax(MCOR_EDGE_ERROR * fabs(slope), (realv)(MCOR_SUM_ROUNDING * fabs(iso)));
 }
 
-/* Moves all vertices of a group along their edges, from t0, until each is on the surface or has
- * made `limit` steps. t0, t: where a vertex starts and where it ends, as shares of the edge.
- * evaluations: the number of evaluations of each vertex. */
+/* Moves all vertices of a group along their edges, from t0. A vertex stops on the surface, when its
+ * bracket is too short to be halved, or after `limit` steps. t0, t: where a vertex starts and where
+ * it ends, as shares of the edge. evaluations: the number of evaluations of each vertex. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
   real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
   mcor_field_at* at, realv* t, fixv* evaluations)

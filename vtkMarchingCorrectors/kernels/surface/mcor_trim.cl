@@ -94,8 +94,8 @@ __global int* mcor_trim_cut(
   return to;
 }
 
-/* One work-item = one batch of triangles. Writes what remains of them [Fig. 3], and, if wanted, the
- * cell of each remaining triangle. */
+/* One work-item = one batch of triangles. Writes what remains of these triangles [Fig. 3], and, if
+ * `follows` is set, the cell of each remaining triangle. */
 __kernel void mcor_trim_fill(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, const int vertex_count,
   __global const int* remaining, __global const int* cuts, __global const int* cut_vertex,

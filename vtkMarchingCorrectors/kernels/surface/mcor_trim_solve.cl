@@ -303,8 +303,8 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits*
 
 /* One work-item = one group of cut vertices at their linear cuts. Moves them to where field = iso
  * and weight = threshold. Writes position, value, gradient, weight and attributes. Writes the flag
- * 1, or 2 if the search fails: the surfaces field = iso and weight = threshold are tangent or too
- * far away, or the boundary eigenvalue has no gradient. */
+ * 1, or 2 if the search fails: the surfaces field = iso and weight = threshold are tangent, too far
+ * away or not reached after `steps` steps, or a gradient is 0. */
 __kernel void mcor_trim_solve(MCOR_GROUP_PARAMS, const real iso, const real tolerance,
   const real threshold, const real fluid_share, const int by_eigenvalue, const int steps,
   const int plane, __global real4* offset, __global real* value, __global real4* gradient,

@@ -5,8 +5,8 @@
 
 /* An independent, brute-force reference in double precision.
  *
- * It answers one question: which lattice edges does the isosurface of an SPH field cross, and how are
- * they joined? Every node that a particle reaches is evaluated. Nothing is excluded, and no code is
+ * It answers two questions: which lattice edges does the isosurface of an SPH field cross, and how are
+ * the crossings joined? Every node that a particle reaches is evaluated. Nothing is excluded, and no code is
  * shared with the library under test. The code is meant to be obviously right, not fast: nodes sum
  * over all particles of their brick (oracle_lattice.h), and points are evaluated through a kd-tree.
  *

@@ -173,7 +173,7 @@ static void case_check_accuracy(case_run* run, int trimmed)
       c->trim_linear <= 2 + c->trim_vertices / 25,
     c->trim_linear, c->trim_vertices);
   /* Few cuts may stay linear where the iso surface and the threshold's surface meet nearby. With negative lobes more
-   * do, because the weight has many extrema. */
+   * cuts stay linear, because the weight has many extrema. */
   CASE_EXPECT(run,
     c->trim_avoidable <=
       4 + c->trim_vertices / (run->options.sph_kernel == MCOR_M_PRIME_4 ? 12 : 50),

@@ -3,8 +3,8 @@
 #ifndef oracle_case_h
 #define oracle_case_h
 
-/* Runs the library and the oracle on the same particles, prints a line for each extraction, and compares them. All test
- * programs of the oracle use it. */
+/* Runs the library and the oracle on the same particles, compares the surfaces, and prints a line for each extraction.
+ * All test programs of the oracle use this file, except test_oracle_self. */
 
 #include "mcor.h"
 #include "oracle_compare.h"
@@ -27,8 +27,8 @@ extern "C"
   int oracle_end_suite(oracle_suite* suite);
   int oracle_wants_case(const oracle_suite* suite, const char* name);
 
-  /* Returns the default options of mcor.h, with every optional array and one iso value. The pointer to the value is
-   * kept. */
+  /* Returns the default options of mcor.h, but with one iso value, uniform cubes, no walls, three dimensions and the
+   * arrays that the oracle checks. The options keep the pointer to the iso value. */
   mcor_options oracle_case_options(const double* iso);
 
   typedef struct oracle_case

@@ -175,7 +175,7 @@ static int seam_differ(const float* values, int32_t a, int32_t b, size_t compone
       components * sizeof(float)) != 0;
 }
 
-/* Returns whether two points that were joined differ in any array. */
+/* Returns whether two joined points differ in any array, or in a coordinate by anything but a period. */
 static int seam_points_differ(
   const mcor_options* options, const mcor_surface* s, int32_t a, int32_t b)
 {

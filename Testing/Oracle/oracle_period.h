@@ -19,7 +19,8 @@ extern "C"
   int oracle_is_periodic(const mcor_options* options);
 
   /* Writes the edges of cubes along x, y, z: the largest edge up to `cube` that divides all periods. If this is less
-   * than half of `cube`, each axis gets the largest edge that divides its own period. */
+   * than half of `cube`, each axis gets the largest edge up to `cube` that divides its own period (without a period,
+   * the longest of these). */
   void oracle_fit_edges(const mcor_options* options, double cube, double edge[3]);
 
   /* Moves the particles into the period, and adds all images that matter. An image reaches as far as its support (h

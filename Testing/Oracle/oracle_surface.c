@@ -16,8 +16,8 @@ static int lattice_above(const oracle_lattice* lattice, int64_t node)
 
 /* ---- edges ---- */
 
-/* Returns which of the four quarters around an edge a cell fills, as bits: the one with the cell's middle, or two if
- * the edge lies within a face of the cell. */
+/* Returns which of the four quarters around an edge a cell fills, as bits: one quarter, or two if the edge lies within
+ * a face of the cell. */
 static int lattice_quadrants(const lattice_cell* cell, const int64_t at[3], int axis)
 {
   const int64_t size = (int64_t)1 << cell->level;
@@ -193,7 +193,7 @@ static int lattice_ambiguous(const oracle_lattice* lattice, const int64_t* ring,
     !lattice_above(lattice, ring[0]) != !lattice_above(lattice, ring[1]);
 }
 
-/* Adds the pairs of a square's edges to `pairs`. */
+/* Adds the pairs of a square's crossed edges to `pairs`. */
 static void lattice_add_pairs(oracle_lattice* lattice, oracle_map* pairs, const lattice_cell* cell,
   const int64_t* ring, int count)
 {

@@ -216,7 +216,7 @@ static void test_damage(void)
   }
 }
 
-/* A vertex on a lattice node fits several edges; it must be matched with the one that lacks a vertex. */
+/* A vertex on a lattice node fits several edges; it must be matched with the edge that lacks a vertex. */
 static void test_vertex_on_node(void)
 {
   fixture f;

@@ -31,7 +31,7 @@ static particle_set make_period(uint64_t seed)
       const double jitter = 0.25 * (2.0 * random_unit(&seed) - 1.0);
       const double from = (double)at[axis] + 0.5 + jitter, turn = 2.0 * PI * from / lengths[axis];
       const double x = from + AMOUNT * lengths[axis] / (2.0 * PI) * sin(turn);
-      /* Coordinates are rounded to multiples of 2^-16, so that shifts by 1/2 are exact. */
+      /* Coordinates are rounded to multiples of 2^-16, so that a shift by one of `lengths` is exact. */
       p.position[3 * i + axis] = floor(x * 0x1p16) * 0x1p-16;
       p.volume[i] *= 1.0 + AMOUNT * cos(turn);
     }

@@ -147,7 +147,7 @@ typedef struct planted
   int64_t point_count, triangle_count;
 } planted;
 
-/* Makes an octahedron, with room for more. */
+/* Makes an octahedron, with room for more points and triangles. */
 static void plant_octahedron(planted* mesh, double points[36], int32_t triangles[36])
 {
   static const double corner[6][3] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 },

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Finds the edge of the lattice that each vertex lies on, and checks that the mesh joins the vertices on faces as it
- * must. An edge is named by its number in oracle_lattice. */
+/* Finds the edge of the lattice that each vertex lies on, and checks that the mesh joins the vertices on faces as the
+ * oracle's segments do. An edge is named by its number in oracle_lattice. */
 
 #include "oracle_compare_internal.h"
 
@@ -38,9 +38,9 @@ static void compare_note_edge(compare_state* state, const char* what, const latt
 
 /* ---- vertices ---- */
 
-/* Finds the crossed edges that a point may lie on, ends included, and that have no vertex yet. Returns how many there
- * are. *axis: the axis of the edge inside which the point lies; -1: it is on a node; -2: it is on no line of the
- * lattice. */
+/* Finds the crossed edges that a point may lie on, ends included, and that still lack a vertex (a pinched edge has
+ * two). Returns how many there are. *axis: the axis of the edge inside which the point lies; -1: the point is on a
+ * node; -2: it is on no line of the lattice. */
 static int compare_candidates(
   compare_state* state, const double point[3], int64_t candidates[COMPARE_CANDIDATES], int* axis)
 {
@@ -203,8 +203,8 @@ static void compare_unmatched(compare_state* state, int64_t v, int axis)
   }
 }
 
-/* Assigns vertices to edges: first vertices that fit one edge only, as long as there are any, then those that fit two,
- * and so on. */
+/* Assigns vertices to edges: first vertices that fit one edge only, as long as there are any, then vertices that fit
+ * two edges, and so on. */
 static void compare_assign(compare_state* state)
 {
   const int64_t count = state->surface->point_count;

@@ -50,7 +50,7 @@ void compare_note(compare_state* state, const char* format, ...);
 
 /* ---- oracle_compare_edges.c: the edge of each vertex, edges without a vertex, and sides of triangles ---- */
 
-/* Counts, for each component, the edges that have a vertex and the edges that lack one. */
+/* Counts, for each component, the edges that have a vertex and the edges that lack a vertex. */
 void compare_edges(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */

@@ -10,8 +10,8 @@
 
 /* ---- vertices ---- */
 
-/* Returns the distance of vertex v from the surface f = iso, in cubes: by the gradient or, if the
- * gradient is small, by the smallest step along the edge after which f has crossed iso. */
+/* Returns the distance of vertex v from the surface f = iso, in cubes: the lesser of the distance by the gradient and
+ * the smallest step along the edge, to both sides, within which f crosses iso. */
 static double compare_distance(
   const compare_state* state, int64_t v, int axis, const oracle_sample* sample)
 {

@@ -95,8 +95,8 @@ particle_set particle_set_medium(double ratio)
   return set;
 }
 
-/* Adds the particles of a box, moved at random from a lattice. The number of particles along each
- * axis is rounded. */
+/* Adds a lattice of particles in a box; fluid particles are moved at random. The number of
+ * particles along each axis is rounded. */
 static void graded_block(particle_set* set, const double low[3], const double high[3],
   double spacing, int solid, uint64_t* state)
 {

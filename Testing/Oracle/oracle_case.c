@@ -198,8 +198,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
  * right. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
-  /* A threshold of 0 trims nothing, with two exceptions: a Shepard mean where the fluid's weight is nearly 0, and a sum
-   * by a kernel with negative lobes and a far too small h, because the weight may be 0 or less at vertices. */
+  /* A threshold of 0 trims only Shepard means, where the fluid's weight is nearly 0. A sum by a kernel with negative
+   * lobes gets 0.05, because with a far too small h the weight at a vertex may be 0 or less. */
   const int lobes =
     run->at->options.sph_kernel == MCOR_M_PRIME_4 && run->at->options.field == MCOR_SUM;
   const int cut = trimmed || lobes || run->at->options.field == MCOR_SHEPARD;

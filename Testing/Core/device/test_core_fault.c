@@ -429,7 +429,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* Enlarges a buffer beyond MCOR_LARGE_ARRAY: the new buffer is mapped to reserve its pages. Each call fails once. */
+/* Enlarges a buffer to a large one, which is mapped to reserve its pages. Each OpenCL call fails once. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;

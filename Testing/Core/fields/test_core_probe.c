@@ -125,8 +125,8 @@ static void test_against_oracle(void** state)
   }
 }
 
-/* Smoothing lengths differ by a factor of 1000. Errors must be small relative to the weight, for gradients relative to
- * the gradient's largest component, and in any case relative to 1. */
+/* Smoothing lengths differ by a factor of 1000. Allowed errors are relative: for weights to the weight, for gradients
+ * to the gradient's largest component; to 1 if these are below 1. */
 static void test_wide_range_against_oracle(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);

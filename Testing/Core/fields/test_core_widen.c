@@ -196,8 +196,8 @@ static void test_surface(void** state)
   }
 }
 
-/* Checks that the call for a box gives particles in the box the same factors as the call for all
- * particles, and that factors do not depend on where a period begins. */
+/* Checks that particles at least 0.6 inside a box get the same factors in the call for the box as
+ * in the call for all particles, and that factors do not depend on where a period begins. */
 static void test_parts(void** state)
 {
   mcor_context* context = *state;

@@ -203,8 +203,8 @@ static void test_auto(void** state)
   }
 }
 
-/* A free surface that ends at walls must take the share one half. Global values measured with another share must be
- * refused. */
+/* With MCOR_WALL_SHARE_MEASURED a free surface must take the share one half. Global values measured with another wall
+ * share must be refused. */
 static void test_measured_elsewhere(void** state)
 {
   CORE_SET set = make_tank();

@@ -25,8 +25,8 @@ extern "C"
     oracle_field field;
     oracle_lattice lattice;
     oracle_limits limits;
-    /* The range of the scalar over fluid particles; if all are equal, their magnitude, or 1 if they are 0. For the free
-     * surface, it is greatest_weight. */
+    /* The range of the scalar over fluid particles; if all scalars are equal, their magnitude, or 1 if they are 0. For
+     * the free surface, it is greatest_weight. */
     double range;
     double greatest_weight; /* of the nodes, at least 1 */
     double unit;            /* roundoff of the working precision */

@@ -14,7 +14,7 @@ from paraview.simple import (ColorBy, GetColorTransferFunction, GetScalarBar, Lo
 
 
 def extract_surfaces(particles):
-    """Makes two surfaces. The filter appears in paraview.simple once the plugin is loaded."""
+    """Returns the free surface and the isosurface of the speed. LoadPlugin() adds MarchingCorrectors to this script's names."""
     surface = MarchingCorrectors(Input=particles)  # noqa: F821
     surface.FluidArray = "ParticleType"  # 0 is fluid, 1 is wall
     surface.FreeSurface = 1

@@ -443,7 +443,7 @@ void pqSPHInUse::showValues()
 
 // ParaView chooses colours when it first shows something. Until a person takes another colour, the
 // panel chooses anew if nothing was visible before (after an error, or with an iso value outside of
-// the range), or if another array is the best one now.
+// the range), or if another array is the best one now. Warns if the output becomes empty.
 void pqSPHInUse::colourLate()
 {
   pqOutputPort* port = outputOf(this->proxy());

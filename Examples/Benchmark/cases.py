@@ -332,8 +332,8 @@ class Walls:
 
 
 def add_walls(data, path):
-    """Writes the particles with a layer of solids around their bounding box. The layer is one least smoothing length away from
-    the box; neighbouring solids are at most this length apart. A solid's volume is this length cubed."""
+    """Writes the particles with a layer of solids around their bounding box. The distance of the layer from the box is
+    the least smoothing length; neighbouring solids are at most this length apart. A solid's volume is this length cubed."""
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing

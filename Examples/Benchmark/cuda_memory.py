@@ -56,7 +56,7 @@ def make(opencl, name, *arguments):
 
 
 def find_device(opencl):
-    """Prints, for each device, whether it can import memory from file descriptors. Returns the first device that does."""
+    """Prints, for each device, whether it can import memory from file descriptors. Returns the first device that can, or None."""
     found, platforms, devices, count = None, (c_void_p * 16)(), (c_void_p * 16)(), c_uint()
     opencl.clGetPlatformIDs(16, platforms, byref(count))
     for platform in platforms[:count.value]:

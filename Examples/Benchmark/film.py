@@ -34,7 +34,7 @@ def splash(spacing, seconds):
 
 
 def write(path, points, velocities, seconds):
-    """Writes a legacy .vtk file, binary."""
+    """Writes the particles of one step as a binary .vtk file. seconds: the step's time."""
     count = len(points)
     parts = ["# vtk DataFile Version 3.0\nsplash\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n",
              np.array([seconds], ">f8"), f"\nPOINTS {count} float\n", points.astype(">f4"), f"\nPOINT_DATA {count}\n"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Finds the steps of particle files, and makes the surface of one, without Blender."""
+"""Finds the steps of particle files, and makes the surface of one step, without Blender."""
 from typing import NamedTuple
 
 import numpy as np
@@ -75,7 +75,7 @@ def _number(text):
 
 
 def write_usd(path, steps, fps, speed, up, words):
-    """Writes one file of all steps. speed: seconds of the simulation in one second of the film."""
+    """Writes one USD file with the surfaces of all steps. speed: seconds of the simulation in one second of the film."""
     with Film(path, [step.path for step in steps], fps=fps, slow=1 / speed, up=up) as film:
         for step in steps:
             film.add(make_surface(step.path, step.number, **words), step.time)

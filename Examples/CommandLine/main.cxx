@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The command line program: reads particles from a file, writes a surface to a file. See --help.
+// The command line program: it reads particles from files, and writes surfaces, images or tables. See --help.
 #include "Extra.h"
 #include "Failures.h"
 #include "Job.h"

@@ -28,7 +28,7 @@ FRAMES = (STEPS - 1) * (BETWEEN + 1) + 1
 
 
 def store(folder):
-    """Writes the steps as a solver would have stored them, each with its particles in another order."""
+    """Writes the steps as a solver would, each with its particles in another order. Returns the name of the .pvd file."""
     points, names = ball(), []
     for step in range(STEPS):
         order = np.random.default_rng(step).permutation(len(points))
@@ -47,7 +47,7 @@ def store(folder):
 
 
 def animate(file):
-    """Makes the scene and the view; the frames are the interpolator's time steps."""
+    """Returns the scene, whose frames are the interpolator's time steps, and its view."""
     film = SPHTemporalInterpolator(Input=PVDReader(FileName=file), ResampleFactor=BETWEEN + 1)  # noqa: F821, the plugin's
     surface = MarchingCorrectors(Input=film, FreeSurface=1, Smooth=1)  # noqa: F821
     view = CreateRenderView(ViewSize=[360, 360], UseColorPaletteForBackground=0, Background=[1.0, 1.0, 1.0],

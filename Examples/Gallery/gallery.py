@@ -32,7 +32,7 @@ from make_particles import poly_data  # noqa: E402
 
 RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
 WATER, ORANGE, LINE, WHITE = (0.45, 0.68, 0.9), (0.90, 0.45, 0.20), (0.1, 0.2, 0.5), (1, 1, 1)
-# Cameras have position, focus and angle. TANK shows the whole tank, with a wider angle for more panels in a row.
+# A camera has a position, a focus and an angle. TANK: the cameras that show the whole tank, by the number of panels in a row.
 TANK = {n: ((-0.1, 2.4, 4.1), (1.62, 0.42, 0.0), angle) for n, angle in ((1, 27), (2, 38), (3, 52))}
 NEAR = (1.2, 1.1, 1.7), (2.75, 0.3, -0.1), 26  # This camera looks at the water behind the obstacle.
 EDGE = (0.3, 0.75, 0.4), (0.82, 0.44, 0.12), 22
@@ -47,7 +47,7 @@ def read():
 
 
 def water(filter_, reader, array=None):
-    """Returns the filter, set up for the fluid."""
+    """Returns the filter, set up for the fluid particles of the dam break and, if given, for the array."""
     filter_.SetInputConnection(reader.GetOutputPort())
     filter_.SetFluidArrayName("ParticleType")
     filter_.SetFluidValue(0)
@@ -57,7 +57,7 @@ def water(filter_, reader, array=None):
 
 
 def surface(reader, array=None, value=0, **properties):
-    """Returns the filter for an isosurface, or for the free surface, with these properties."""
+    """Returns the filter after a run with these properties: for an isosurface of the array; without an array, for the free surface."""
     extract = water(vtkMarchingCorrectors(), reader, array)
     extract.SetFreeSurface(not array)
     if array:
@@ -221,7 +221,7 @@ def figure_5():
         for scale, text in ((1.0, "pressure 1500 Pa, h"), (0.75, "0.75 h"), (0.5, "0.5 h"))], TANK[3])
 
 
-FINEST, SHARE = 0.002, 0.1  # The smallest spacing, and how it grows with the distance from the point.
+FINEST, SHARE = 0.002, 0.1  # The spacing is at most SHARE times the distance from the origin, or FINEST.
 
 
 def graded_particles():

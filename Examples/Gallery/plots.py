@@ -137,7 +137,7 @@ def numbers():
 
 def projection(count=60000, size=480, decades=3.5):
     """Plots a disc galaxy, with gas in two spiral arms, from above and from the side: on the left the column
-    density, on the right the numbers of particles in pixels."""
+    density, on the right the number of particles in each pixel."""
     random = np.random.default_rng(5)
     radius = 0.22 * random.gamma(2, size=count)
     angle = random.uniform(0, 2 * np.pi, count)

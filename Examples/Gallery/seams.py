@@ -30,7 +30,7 @@ def free_surface(particles):
 
 
 def slabs(particles):
-    """Makes the surface of each slab alone."""
+    """Yields the surface of each slab, made from its particles alone."""
     along = Calculator(Input=particles, ResultArrayName="along", Function="coordsX")
     for low, high in zip(CUTS, CUTS[1:]):
         slab = Threshold(Input=along, Scalars=["POINTS", "along"], LowerThreshold=low, UpperThreshold=high - 1e-6,

@@ -14,11 +14,11 @@ class vtkDataObject;
 class vtkDataSet;
 struct PictureOptions;
 
-/// Draws a picture of a surface, or of a probed data set, inside the outline of a frame, and returns
-/// the bytes of a .png file. In a series, such as a film's steps, the view has room for all pictures
-/// so far: the eye moves back if something would be cut off, and otherwise stays. file: the picture's
-/// name, for the sentence of a std::runtime_error. sliceAxis: the axis along which the viewer looks at
-/// a slice; below 0: there is no slice.
+/// Draws a picture of a surface, or of a probed data set, with the edges of the box around `frame`;
+/// returns the bytes of a .png file. In a series, such as a film's steps, the view has room for all
+/// pictures so far: the eye moves back if something would be cut off, and otherwise stays.
+/// file: the picture's name, for the sentence of a std::runtime_error. sliceAxis: the axis along
+/// which the viewer looks at a slice; below 0: there is no slice.
 using Picture = std::function<std::string(const std::string& file, vtkDataSet* data,
   vtkDataSet* frame, const ColorScale& colors, int sliceAxis)>;
 

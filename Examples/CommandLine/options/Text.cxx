@@ -50,8 +50,8 @@ bool IsControl(unsigned code)
   return code < 0x20 || (code >= 0x7f && code < 0xa0);
 }
 
-/// Whether this character must not reach a terminal or XML: line breaks, direction marks, and
-/// characters that XML does not allow.
+/// Whether this character must not reach a terminal or XML: line separators, marks of direction and of
+/// byte order, and code points that end in fffe or ffff.
 bool IsInvisible(unsigned code)
 {
   return code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||

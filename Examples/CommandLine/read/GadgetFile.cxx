@@ -75,7 +75,7 @@ public:
     }
   }
 
-  /// Reads the gas, with the arrays that are listed above.
+  /// Reads the gas, with the arrays listed above; from format 1, only with the arrays up to SmoothingLength.
   vtkSmartPointer<vtkPolyData> ReadGas()
   {
     auto gas = vtkSmartPointer<vtkPolyData>::New();
@@ -137,7 +137,7 @@ private:
     return number;
   }
 
-  /// Goes to the next record. Returns false at the end.
+  /// Gives the next record, without its two counts. Returns false at the end of the file.
   bool Next(View& record)
   {
     const View rest = this->Bytes->substr(this->At);

@@ -196,8 +196,8 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
-/// Returns only the points, their arrays, and the field data that tell a period. Nothing else in the
-/// data is used, and cells would cost memory for each particle.
+/// Returns the points, their arrays, and the field data that tell a period, without the cells. haveVertices: if the
+/// file has a mesh, only the points of vertices are returned, and a note about the other points is printed.
 vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool haveVertices)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
@@ -261,7 +261,7 @@ std::pair<std::string, std::size_t> StepOf(const std::string& name)
     : std::make_pair(name, 0ull);
 }
 
-/// Returns the files that a list of pieces names; for any other file, the file itself.
+/// Returns the files that a list of pieces names, or all files of a GADGET snapshot; for any other file, the file itself.
 std::vector<std::string> ListParts(const std::string& name)
 {
   const auto [file, step] = StepOf(name);

@@ -27,7 +27,7 @@ std::vector<std::string> NamesOf(vtkFieldData* data);
 /// Adds an array of these numbers, one in each tuple, to field data, or to a table's row.
 void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<double>& numbers);
 
-/// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .vtk".
+/// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .ply".
 std::string ParticleFileEndings();
 
 /// The words that --only NAME=WORD chooses, by array name. An array of texts with such a name is read as numbers: 1, 2,
@@ -68,8 +68,8 @@ struct ParticleSets
     false; ///< the files are parts of one set, which may hold copies of other parts' particles
 };
 
-/// Reads the files that belong to process `rank` of `count`: each process gets successive files. A file
-/// that lists pieces stands for these pieces.
+/// Reads the files that belong to process `rank` of `count`: each process gets successive files. A
+/// list of pieces stands for its pieces, a file of a GADGET snapshot for all files of this snapshot.
 ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
 /// Joins the sets to one, with the arrays that all of them have; there may be no particles. Leaves out
@@ -91,7 +91,7 @@ vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 /// Returns the period for "--periodic auto". Fails with the problem, or because no period was found.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
 
-/// Returns a hint if --periodic is not given although the data tell a period, else "".
+/// Returns a hint for a run without --periodic if the data tell a period or a tilted cell, else "".
 std::string HintOfPeriod(vtkDataObject* particles);
 
 /// Returns the text of --list-arrays: a line for each array of the particles, and a line for each setting that a run

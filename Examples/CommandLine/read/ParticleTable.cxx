@@ -55,7 +55,7 @@ std::vector<View> WordsOf(View comment)
   return !words.empty() ? words : Split(comment, comment.find(',') != View::npos ? ',' : ' ');
 }
 
-/// Reads rows of values below a row of names, which may be a comment.
+/// Reads rows of values. Before the first one there may be a row of names, or a comment with names.
 vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
 {
   constexpr std::size_t mostColumns = 10000;

@@ -33,7 +33,7 @@ struct Element
   bool HasLists = false;
 };
 
-/// Reads the head. `form` is ascii, binary_little_endian or binary_big_endian.
+/// Reads the head. form: becomes the name of the file's format, such as ascii or binary_little_endian.
 std::vector<Element> ReadHead(Lines& lines, std::string& form)
 {
   std::vector<Element> elements;

@@ -302,7 +302,7 @@ const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = 
 /// return "" if no complete field data are found.
 std::string FieldOfXml(const std::string& head)
 {
-  // A search from npos on finds nothing, so `close` is npos if any search failed.
+  // A search from npos on finds nothing, so `close` is npos if `tag`, `tagEnd` or `begin` is.
   const std::size_t tag = head.find("<VTKFile"), type = head.find("type=", tag);
   const std::size_t tagEnd = head.find('>', tag), begin = head.find("<FieldData", tagEnd);
   const std::size_t close = head.find("</FieldData>", begin);

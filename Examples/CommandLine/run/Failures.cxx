@@ -156,8 +156,8 @@ public:
   static Window* New();
   vtkTypeMacro(Window, vtkOutputWindow);
 
-  /// Warnings are kept here, too: if a file ends in mid-array, the legacy readers only warn ("Error
-  /// reading ascii data").
+  /// Keeps a warning that begins with "Error" as an error: if a file ends in mid-array, the legacy readers
+  /// only warn ("Error reading ascii data").
   void DisplayText(const char* text) override
   {
     const std::string sentence = Sentence(text);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the user is told if a library fails or crashes, or a signal ends the program; and which files are then removed.
+/// These functions tell the user of failures and crashes, and remove temporary files if a crash or a signal ends the program.
 #ifndef Failures_h
 #define Failures_h
 

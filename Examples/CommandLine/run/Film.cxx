@@ -27,7 +27,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Lists the files of the steps: film_0000.vtp, ... for film.pvd; film_0000.ply, ... for film_%04d.ply.
+/// Lists the files of the steps: film_0000.vtp (or .vti), ... for film.pvd; film_0000.ply, ... for film_%04d.ply.
 std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
 {
   const std::string& output = job.Output;
@@ -225,7 +225,7 @@ private:
     }
   }
 
-  /// Puts a step whose file was written on the list of steps, and reports the step.
+  /// Adds a step, whose file is written, to the list of steps and to the statistics, and prints a line about the step.
   void Keep(
     const Moment& moment, vtkFieldData* statistics, const std::string& what, double seconds)
   {

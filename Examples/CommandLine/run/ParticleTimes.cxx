@@ -157,7 +157,7 @@ std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 
 }
 
-/// The stored steps of a film, for VTK's pipeline: reads the particles at the requested time.
+/// This source of VTK's pipeline offers the times of the stored steps, and reads the step at the requested time.
 class StoredSteps : public vtkPolyDataAlgorithm
 {
 public:

@@ -28,8 +28,8 @@ struct Job;
 /// statistics and the picture, each by itself.
 bool MakeSurface(Sharing& sharing);
 
-/// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them. If
-/// a step fails, makes the others.
+/// Makes a surface, or an image of a projection, for each time of a film; and, if the output is a .pvd
+/// file, this list of the steps. If a step fails, makes the others.
 bool MakeFilm(Sharing& sharing);
 
 /// Measures, at each time of the input, the free surface along lines; or the flux through sections, and the fluxes' integrals
@@ -77,7 +77,7 @@ void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* par
   ColorScale& colors, bool hasHints);
 
 /// Returns the bytes of a .png file that shows a surface, points with the field, or an image of the
-/// field, in the outline of `frame`.
+/// field, with the edges of the box around `frame`.
 std::string Draw(const Job& job, const std::string& file, vtkDataSet* data, vtkDataSet* frame,
   const Picture& picture, ColorScale& colors);
 

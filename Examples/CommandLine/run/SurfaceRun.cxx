@@ -137,8 +137,8 @@ std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particl
   return without;
 }
 
-/// Tells the filter which arrays to interpolate: all, or those of --attributes, but none that the
-/// surface's file could not hold.
+/// Tells the filter which arrays to interpolate: all, or those of --attributes; but neither arrays that the
+/// surface's file could not hold, nor the mark of walls, nor numbers that stand for texts.
 void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   const std::vector<std::string>& asked = job.AttributeNames;

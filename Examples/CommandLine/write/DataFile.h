@@ -27,7 +27,7 @@ void WriteDataSet(const std::string& file, vtkDataSet* data);
 /// Whether SurfaceBytes() knows a format with the ending of this name.
 bool IsSurfaceFile(const std::string& file);
 
-/// Returns the endings of the formats that SurfaceBytes() knows, ".vtp, .stl, ... or .obj", for
+/// Returns the endings of the formats that SurfaceBytes() knows, ".vtp, .stl, ... or .csv", for
 /// sentences and the help.
 std::string SurfaceFileEndings();
 

@@ -68,7 +68,7 @@ herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* fou
 }
 
 /// Throws std::runtime_error if the file links to other files, which the user has not named, or if its
-/// groups lie too deep in each other.
+/// groups lie too deep in each other or cannot be listed.
 void RefuseLinks(const std::string& file)
 {
   H5open();

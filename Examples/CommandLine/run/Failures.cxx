@@ -54,7 +54,7 @@ __attribute__((section(".preinit_array"), used)) void (*const FindAwaitedFirst)(
 const bool FoundAwaited = (FindAwaited(), true);
 #endif
 
-/// Plain memory, for a handler that must not allocate any.
+/// The handler of crashes must not allocate memory, so it uses these arrays.
 char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
 char StackOfHandler[1 << 16]; // after an endless recursion, the usual stack is full

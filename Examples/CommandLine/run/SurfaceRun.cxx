@@ -33,8 +33,8 @@
 namespace
 {
 
-/// Makes the settings that depend on the input: whether a text is a number or the name of an array,
-/// and where a period lies.
+/// Makes the settings that depend on the input, such as whether a text is a number or the name of an
+/// array, and where a period lies.
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   const auto set = [&](const std::string& text, void (vtkSPHAlgorithm::*setNumber)(double),

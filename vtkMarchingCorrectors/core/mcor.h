@@ -221,13 +221,13 @@ extern "C"
 
     /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if
      * both are given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j
-     * sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the
-     * sum is low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j =
-     * the kernel's standard deviation along an axis, d = the dimension. Solids fill such a side: g
-     * contains the solids' part, times the factor from 0 to 1 that makes |g| least; F_j = 1 for
-     * solids themselves. These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids
-     * unless the free surface ends at them. Computed volumes next to walls therefore differ between
-     * the fields. */
+     * sum_k W(x_j - x_k, h_j)). The sums are low where a particle has no neighbours on one side;
+     * F_j makes up for this. F_j is 1 for solids, else 1 + 5/3 D^2, with D = s h_j |g| / n. n is
+     * sum_k h_k^d W(x_j - x_k, h_j), d the dimension, and s h_j the kernel's standard deviation
+     * along an axis. g is the gradient of n. The solids' part of g is multiplied by the factor from
+     * 0 to 1 that makes |g| least, as solids fill a side without neighbours. All sums leave out
+     * ignored solids; for MCOR_WEIGHT_SUM, they leave out all solids unless the free surface ends
+     * at solids. So computed volumes next to walls differ between the fields. */
     mcor_array volume, mass, density;
 
     /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. If it has 2 or more components,

@@ -95,7 +95,7 @@ typedef struct mcor_kernel_row
 } mcor_kernel_row;
 const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel);
 
-/* Fails for lack of host memory unless `complete`: all allocations on the host succeeded. */
+/* Fails for lack of host memory if `complete` is false: an allocation on the host failed. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);
 /* Makes room for one more element behind the first `count` of an array, which has room for
  * `room` elements of `width` bytes. */
@@ -139,8 +139,9 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 /* The most cubes along an axis for a lattice that is cut to a box or to points; particles with long
  * supports may lie far outside of such a lattice. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
-/* Keys have bits for MCOR_NODE_LIMIT nodes along an axis, and for MCOR_KEY_LIMIT cells in all. The
- * two highest bits of a key are flags, see MCOR_RING_CELL. */
+/* A node's key has 21 bits for each axis: a lattice has at most MCOR_NODE_LIMIT nodes along it.
+ * A cell's key has 62 bits, and two flags above them (MCOR_RING_CELL): a lattice has at most
+ * MCOR_KEY_LIMIT cells. */
 #define MCOR_NODE_LIMIT (1 << 21)
 #define MCOR_KEY_LIMIT 4.6e18
 

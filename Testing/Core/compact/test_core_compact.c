@@ -311,6 +311,7 @@ static void boxes_in_period(void** state)
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   options.compact = 1;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   memcpy(options.periodic, period, sizeof period);
   core_check_these_cuts(*state, "levels, period", &input, &options, core_cuts, 2);
 }

@@ -97,7 +97,7 @@ static void check_programs(const mcor_input* input, const mcor_options* options)
   CORE_CHECK(built == (wanted | 1 << MCOR_PROGRAM_TRIM), "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
 }
 
-/* With pairs, in a box, and with curvature and nearest particles, mcor_list_programs names the programs used. */
+/* With pairs, in a box, and of adaptive cubes with curvature and nearest particles, mcor_list_programs names the programs used. */
 static void test_programs_of_runs(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
@@ -107,7 +107,6 @@ static void test_programs_of_runs(void** state)
   mcor_options options = plain;
   setenv("MCOR_THREADS", "1", 1); /* nothing is built ahead, so only what is used is built */
   options.seeds = MCOR_PAIRS;
-  options.level_limit = 0;
   check_programs(&input, &options);
   options = plain;
   for (int a = 0; a < 6; ++a)
@@ -118,6 +117,7 @@ static void test_programs_of_runs(void** state)
   set.smoothing_length[0] *= 2;
   const mcor_input adaptive = core_input(&set);
   options = plain;
+  options.level_limit = MCOR_CUBE_LEVELS - 1;
   options.outputs |= MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_NEAREST_PARTICLE;
   check_programs(&adaptive, &options);
   unsetenv("MCOR_THREADS");

@@ -205,8 +205,9 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_part(int a, int b)
   return b * (b - 1) / 2 + a;
 }
 
-/* Returns the third vertex of the triangle with side a-b in the cheapest cut of the loop's part
- * from a to b. *least: the cost of this cut without side a-b. */
+/* A side from a to b closes the loop's part between these vertices. Returns the third vertex of the
+ * triangle at this side, if the part is cut into triangles as cheaply as possible. *least: the cost
+ * of this cut without the side from a to b. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
 {

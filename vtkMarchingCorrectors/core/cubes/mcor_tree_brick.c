@@ -17,7 +17,8 @@ int mcor_tree_level_of(double h, double h_min, int top)
   return level;
 }
 
-/* Most bricks of level 0. All higher levels together have at most about a third as many. */
+/* The largest number of bricks at level 0. All higher levels together add at most about a third of
+ * this number. */
 #define MCOR_BRICK_LIMIT 0x1p63
 
 /* Along each axis, the lattice is covered by a whole number of bricks of level top + 1. */

@@ -21,9 +21,9 @@ bool mcor_sample_is_above(real value)
 }
 
 /* One work-item = one brick. Reads used cells, node masks and, with leaves of several levels, which
- * cells are plain. Writes the ambiguous faces between two plain cells of which at least one is
- * used, and the number of these faces. In a plane, the faces are the plain squares that are
- * used. */
+ * cells are plain: these touch no finer brick. Writes the ambiguous faces between two plain cells,
+ * at least one of which is used, and the number of these faces. In two dimensions, a cell is a
+ * single square: writes the ambiguous squares that are plain and used. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
   const int leaf_count, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)

@@ -362,8 +362,8 @@ public:
    *   Gaussian curvature.
    * - CorrectionLength, "CorrectionLength": how far the correction moved the vertex, unit L.
    * - Residual, "Residual": field minus iso value at the vertex, unit of the scalar.
-   * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
-   *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap but
+   * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary, but only
+   *   by linear interpolation, 4 next to a cell that NodeThreshold discarded, 8 on a cap but
    *   not on the surface, or inside a filled region.
    */
   vtkSPHFlagMacro(ComputeNormals, 1);
@@ -462,7 +462,7 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output);
   bool TakeWidening(vtkRun& run, vtkSPHParticles& input);
-  /** Finds the arrays that Widen() writes for this process's particles, and the core's statistics. */
+  /** Finds Widening and, if volumes are computed, WideningVolume of this process's particles, and the core's statistics. */
   bool FindWidening(vtkRun& run, vtkSPHParticles& mine, vtkPointData* found,
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input, mcor_options options,

@@ -303,7 +303,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
   return numbers;
 }
 
-// Copies points and triangles of the pieces that stay, with all their arrays, in their order.
+// Copies points and triangles of the pieces that stay, with all their arrays, in their order. Adds ComponentId and ComponentVolume.
 void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output)
 {
   vtkNew<vtkIdList> points, cells;

@@ -59,7 +59,7 @@ public:
   void SetParticlesData(vtkDataObject* particles) { this->SetInputData(1, particles); }
   ///@}
 
-  /** The table, the second output. */
+  /** Returns the table, the second output. */
   vtkTable* GetTable();
 
   /** Lower and upper sides of one period along each axis; 0 and 0 (the default): none. */

@@ -97,7 +97,7 @@ private:
 class vtkSPHAlgorithm::vtkRun
 {
 public:
-  /** Makes a shared run if processes share the filter's runs. */
+  /** Makes a shared run if processes share the filter's runs, else a run of this process alone. */
   static std::unique_ptr<vtkRun> Make(vtkSPHAlgorithm* filter);
 
   explicit vtkRun(vtkSPHAlgorithm* filter)
@@ -129,14 +129,14 @@ public:
   /** Returns true if `problem` is empty on all processes. Else reports the error and returns false. */
   virtual bool Agree(const std::string& problem);
 
-  /** Takes this process's particles. Returns false if the run was cancelled; a run of one process also if they are null. */
+  /** Takes this process's particles. Returns false if the run was cancelled or, in a run of one process, if the particles are null. */
   virtual bool Begin(vtkPointSet* particles);
   /** Returns the filter's description of the particles, completed as vtkSPHChoose() does. */
   vtkSPHParticlesChoice Choose(vtkSPHRequest* first = nullptr);
   /**
    * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if there is
    * no fluid, and names the `consequence`, such as "no surface"; else warns if a setting has no effect.
-   * Returns false, after an error, if an array is not usable. Does nothing without particles.
+   * Returns false, after an error, if an array is not usable. Without particles only returns true.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /**

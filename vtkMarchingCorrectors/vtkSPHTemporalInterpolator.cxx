@@ -45,7 +45,7 @@ public:
     kept->ShallowCopy(taken);
   }
 
-  /** Returns the first requested step that is not kept, or nullptr. */
+  /** Returns the time of the first step that is needed and not kept, or nullptr. */
   const double* FirstLacking() const
   {
     const auto lacking = std::find_if(
@@ -63,7 +63,7 @@ public:
 
 namespace
 {
-/** Times that differ by less than this share of their step's length are the same: 3 * 0.1 is 0.3. */
+/** Times that differ by at most this share of the interval between two steps count as the same: 3 * 0.1 counts as 0.3. */
 const double SameTime = 1e-9;
 
 std::vector<double> TimesOf(vtkInformation* info)

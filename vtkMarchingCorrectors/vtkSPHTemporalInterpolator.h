@@ -4,8 +4,8 @@
  * @class   vtkSPHTemporalInterpolator
  * @brief   SPH particles at any time between the steps that are stored
  *
- * This filter provides particles at any time from the first step that its reader has to the last,
- * interpolated between two steps. It keeps these two, so that an animation reads each step once.
+ * This filter provides particles at any time between the reader's first and last step, interpolated
+ * between two steps. It keeps these two steps, so that an animation reads each step once.
  *
  * Particles are matched between two steps by their ids, in any order. The position follows the
  * cubic Hermite curve through both positions with both velocities as tangents; float and double

@@ -123,7 +123,7 @@ def copy_at(address, kind, shape):
 
 
 def list_named(arrays):
-    """Makes the core's list of arrays from {name: array}, or from pairs. An array without numbers is listed with its shape alone."""
+    """Returns the core's list of arrays, from {name: array} or from pairs, and its length. An array without numbers has its shape alone."""
     pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
     named = (c.mcor_named * max(len(pairs), 1))()
     for each, (name, array) in zip(named, pairs):
@@ -320,7 +320,7 @@ def place_period(lengths, extent):
 
 
 def set_option(target, name, kind, value):
-    """Sets an option of the core. An option that is an array (box) is set only if it is given."""
+    """Sets an option of the core. An option that is an array, such as box, is set only if the value is not None."""
     if "[" not in kind:
         converted = number(name, kind, value)
         setattr(target, name, converted)

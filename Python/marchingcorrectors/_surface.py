@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _same(one, other):
-    """Whether two values are equal: of arrays type, shape and bits, NaN included, of dictionaries the entries."""
+    """Whether two values are equal. Arrays must have the same type, shape and bits, so NaN equals NaN; dictionaries must have equal entries."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return type(one) is type(other) and one.shape == other.shape and one.dtype == other.dtype \
             and one.tobytes() == other.tobytes()
@@ -109,13 +109,13 @@ class Surface(Result):
                 f"arrays: {self._names(CELLS)}>")
 
     def point_arrays(self) -> Dict[str, np.ndarray]:
-        """{name: array} of all that points carry, under the names that VTK's filter gives them."""
+        """Returns {name: array} of all that points carry, under the names that VTK's filter gives them."""
         own = {self.iso_value_name if f.name == "iso_value" else camel(f.name): getattr(self, f.name) for f in fields(self)
                if isinstance(getattr(self, f.name), np.ndarray) and f.name not in CELLS}
         return {**{name: array for name, array in self.attributes.items() if name not in own}, **own}
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """A pyvista.PolyData with all arrays of the surface."""
+        """Returns a pyvista.PolyData with all arrays of the surface."""
         import pyvista
 
         from ._vtk import build_mesh
@@ -130,7 +130,7 @@ class Surface(Result):
         return mesh
 
     def to_trimesh(self) -> trimesh.Trimesh:
-        """A trimesh.Trimesh with all arrays of the points as vertex_attributes."""
+        """Returns a trimesh.Trimesh with all arrays of the points as vertex_attributes."""
         import trimesh
 
         arrays = {name: array for name, array in self.point_arrays().items() if name != "Normals"}
@@ -139,7 +139,7 @@ class Surface(Result):
                                process=False)
 
     def to_meshio(self) -> meshio.Mesh:
-        """A meshio.Mesh with all arrays of the points that hold numbers."""
+        """Returns a meshio.Mesh with all arrays of the points that hold numbers."""
         import meshio
 
         arrays = {name: array.astype(np.uint8) if array.dtype == bool else array

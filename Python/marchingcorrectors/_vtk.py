@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the core's arguments from VTK's data sets: from one set, or from all blocks joined to one set; the core finds the arrays. Makes a
-vtkPolyData from a surface, with a run's results, settings and costs as field data, like vtkMarchingCorrectorsOutput."""
+vtkPolyData from a surface, and puts a run's results, settings and costs into a vtkFieldData, like vtkMarchingCorrectorsOutput."""
 import ctypes
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -21,7 +21,7 @@ from .io.vtk_files import VERTICES, find_vertices
 GHOSTS = "vtkGhostType"
 # These options are not written to the field data, because users do not look for them, or because statistics show them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
-WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells walls.
+WALL_BLOCK = "WallBlock"  # In blocks that are one set, this array says whether the block's name tells of walls.
 
 
 def name_of(array):

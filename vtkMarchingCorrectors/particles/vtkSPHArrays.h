@@ -131,7 +131,7 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const T (&values)[N])
   vtkSPHAdd(data, name, std::vector<T>(values, values + N));
 }
 ///@}
-/** Adds an array with one count for each level of cubes, up to the last level with a count above 0. It has at least one count. */
+/** Adds an array with one count for each level of cubes, up to the last level with a count above 0, but at least for the first level. */
 void vtkSPHAdd(
   vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 
@@ -187,7 +187,7 @@ enum vtkSPHHow
 /** Adds the costs of one call of the core to the costs of earlier calls in `run`. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
-/** Finds the point array with the most usual name for this quantity, with so many components; nullptr: there is none. */
+/** Returns the point array that has the most usual name for this quantity and `components` components; nullptr: there is none. */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
 /** Lists VTK arrays for the core, and keeps the arrays alive. Copies arrays whose values the core cannot read in place. */

@@ -87,7 +87,7 @@ struct Leaf
     return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
   }
 
-  /** Returns the name of the fluid array that chooses this block as the fluid. */
+  /** Returns the value of the setting FluidArrayName that makes this block the fluid. */
   std::string FluidArray() const { return "Block: " + this->Name; }
 };
 

@@ -49,7 +49,7 @@ struct vtkSPHWanted
   bool FreeSurface = false, HasIsoValues = false, Filled = false;
 };
 
-/** Returns, for each particle, whether the choice keeps it. An empty list: all are kept, or the array of a condition is missing. */
+/** Returns, for each particle, whether the choice's Within and Only keep it. An empty list: all are kept, or an array of Only is missing. */
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /**
@@ -128,7 +128,7 @@ public:
   std::vector<std::uint64_t> AttributesSignature; // the same for the interpolated arrays
 
 private:
-  /** Options on which sums over neighbours depend. */
+  /** Returns the options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
   /** Returns an array of this name, filled by vtkSPHSumNeighbors(). An array that was filled before
    * for the same particles is used again. If the sums fail, returns null and sets Error. */

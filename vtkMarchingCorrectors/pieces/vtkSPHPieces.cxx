@@ -113,8 +113,8 @@ vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
 }
 
 // Joins the pieces of two points. The piece of `one` moves up by a period along this axis; it does
-// not move if the axis is -1. If two ways to one point give different shifts, the piece goes around
-// the period.
+// not move if the axis is -1. If two ways through a piece to the same point give different shifts,
+// the piece goes around the period.
 void vtkSPHPieces::Join(vtkIdType one, vtkIdType other, int axis)
 {
   const vtkIdType old = this->FindRoot(one), kept = this->FindRoot(other);
@@ -225,7 +225,7 @@ double vtkSPHPieces::PeriodOf(double at, int axis, double tolerance) const
   return length > 0.0 ? std::floor((at - this->Low[axis]) / length + tolerance) : 0.0;
 }
 
-// Returns a triangle's corners at the place where its piece is not cut by the period's sides.
+// Writes a triangle's corners, moved by whole periods to where the triangle's piece is not cut by the period's sides.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
   const auto& points = this->Triangles[triangle];
@@ -285,8 +285,8 @@ void vtkSPHPieces::NumberPieces()
   }
 }
 
-// Measures relative to the middle of the bounds, because coordinates may be large. The centre is
-// the volume's centre; without a volume, the area's.
+// Measures each piece's volume and centre, relative to the middle of the piece's bounds, because
+// coordinates may be large. The centre is the volume's centre; without a volume, the area's centre.
 void vtkSPHPieces::Measure()
 {
   std::vector<Triple> byArea(this->Pieces.size()), byVolume(this->Pieces.size());

@@ -166,8 +166,8 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
 }
 }
 
-// Lists the shifts from a point in the period to its images that may lie in pieces. hasVolume: in
-// pieces with a volume, else in pieces without.
+// Lists the shifts from a point in the period to its images that may lie in pieces. hasVolume:
+// whether these are the pieces with a volume, or the pieces without a volume.
 std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
 {
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };
@@ -249,7 +249,7 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
 
 // Rays go both ways along each axis. Each ray ends at the first face of a piece without a volume,
 // where it leaves or enters the piece. If more rays leave than enter, the nearest piece that a ray
-// leaves is around the point. One ray is not enough, because an open piece has holes.
+// leaves is the result, else -1. One ray is not enough, because an open piece has holes.
 std::vector<vtkIdType> vtkSPHPieces::FindAround(
   const std::vector<Triple>& points, double isoValue) const
 {

@@ -44,7 +44,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-/** A list for each rank, or from each rank. */
+/** A list of ids for each rank, or from each rank. */
 using vtkSPHRanksLists = std::vector<std::vector<vtkIdType>>;
 
 class vtkSPHRanks
@@ -87,7 +87,7 @@ public:
     GREATEST = vtkCommunicator::MAX_OP,
     SUM = vtkCommunicator::SUM_OP
   };
-  /** Replaces each value by its least, greatest or sum over all ranks. Returns false, and changes nothing, if a rank has stopped. */
+  /** Replaces each value by the least, greatest or sum of all ranks' values. Returns false, and changes nothing, if a rank has stopped. */
   template <typename T>
   bool Reduce(Operation operation, T* values, int count)
   {

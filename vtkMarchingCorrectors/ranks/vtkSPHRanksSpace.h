@@ -36,7 +36,7 @@ class vtkSPHRanksSpace
 {
 public:
   vtkSPHRanksSpace() = default;
-  /** Keeps pointers to both arguments, for Share() and Divide(). globals: of all ranks' particles. */
+  /** Keeps pointers to both arguments, for Share() and Divide(). globals: measured over all ranks' particles. */
   vtkSPHRanksSpace(const mcor_options& options, const mcor_globals& globals);
 
   double First[3] = { 0.0, 0.0, 0.0 }; ///< where the first period begins

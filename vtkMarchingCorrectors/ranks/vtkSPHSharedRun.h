@@ -61,7 +61,7 @@ public:
    */
   vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
   /** Makes the input stand for all ranks' particles in warnings: sets their number, and takes away
-   * what warnings do not read. */
+   * the globals, and the positions and marks of solids, which are of this rank's particles alone. */
   void OfAll(mcor_input& core, mcor_options& options) const;
   /** Adds a statistic with one component for each rank. */
   template <typename T>

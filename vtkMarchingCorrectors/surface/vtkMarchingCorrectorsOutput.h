@@ -53,8 +53,8 @@ public:
   /** Returns the largest magnitude of the mesh's coordinates if they are floats; else 0. Call it
    * before BuildMesh(). */
   double FindLargestFloat(int precision) const;
-  /** Adds statistics and parameters. Except the device and the costs of the run, they depend on input
-   * and options alone. */
+  /** Adds statistics and parameters. Except the device, its platform and the costs of the run, they
+   * depend on input and options alone. */
   void AddRun(vtkFieldData* run) const;
 
 private:

@@ -145,7 +145,7 @@ bool vtkSPHTemporalPair::Match(
   return true;
 }
 
-// Sorts the particles of each step by number, and goes through both lists.
+// Sorts each step's particles by number, and finds the numbers that are in both lists. Returns false, after an error, if they are no ids.
 bool vtkSPHTemporalPair::MatchNumbers()
 {
   std::vector<std::pair<std::int64_t, vtkIdType>> sorted[2];
@@ -154,8 +154,8 @@ bool vtkSPHTemporalPair::MatchNumbers()
     vtkDataArray* ids = this->Steps[k].Ids;
     for (vtkIdType i = 0; vtkSPHIsReal(ids) && i < ids->GetNumberOfTuples(); ++i)
     {
-      // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have become
-      // equal.
+      // Beyond 2^53, floating point cannot hold all whole numbers, so distinct numbers may have
+      // become equal.
       const double real = ids->GetComponent(i, 0);
       if (!(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
       {
@@ -278,8 +278,8 @@ bool vtkSPHTemporalPair::Find(const std::string& role, const std::string& name, 
   return this->Error.empty();
 }
 
-// Warns if a velocity is not finite, or if FewParticles or more have moved along their mean velocities
-// less than half, or more than twice, as far as the velocities say. Velocities are then not used.
+// Warns, and does not use the velocities, if a velocity is not finite, or if the particles in both steps, FewParticles
+// or more, have on the whole moved less than half, or more than twice, as far along their velocities as these say.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

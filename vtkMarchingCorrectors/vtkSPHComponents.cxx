@@ -44,8 +44,8 @@ constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 const char* const IdName = "ComponentId";
 
 /**
- * Returns the array of this name, or the array with the most usual name of the quantity; nullptr
- * if there is none.
+ * Returns the array of this name or, if the name is empty, the array with the most usual name of the
+ * quantity; nullptr if there is none.
  */
 vtkDataArray* FindArray(
   vtkPointSet* particles, const std::string& name, mcor_quantity quantity, int components)

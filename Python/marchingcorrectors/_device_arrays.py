@@ -110,8 +110,8 @@ class Driver:
             with self.current(primary):
                 memory, room = self.take(size)
             block = (ctypes.c_char * size).from_address(memory)
-            # Python may delete a block in a thread that holds the lock already, so this call must not need the lock. A list's
-            # append needs no lock.
+            # Python may delete a block in a thread that holds the lock already, so the block's finalizer must not need the
+            # lock. A list's append needs no lock.
             weakref.finalize(block, self.idle.append, (memory, room)).atexit = False
             with self.current(own):
                 if stream is not None:

@@ -160,7 +160,7 @@ def start():
 
 
 def devices() -> List[str]:
-    """The devices, each as "device (platform)", in the order of their numbers: first the built-in one, whose kernels
+    """Returns the devices, each as "device (platform)", in the order of their numbers: first the built-in one, whose kernels
     are in this package, then the devices of OpenCL drivers, in the order of the system's loader.
     """
     start()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes films as one USD file (.usdc, .usda, .usd): a mesh that changes from step to step, with velocities. Uses Pixar's
-package usd-core."""
+"""Writes films as one USD file (.usdc, .usda, .usd): a mesh, lines and balls that change from step to step, with velocities. Uses
+Pixar's package usd-core."""
 from __future__ import annotations
 
 import os

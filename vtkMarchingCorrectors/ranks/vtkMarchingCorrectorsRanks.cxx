@@ -41,9 +41,9 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 }
 
 /**
- * Merges the ranks' statistics. Counts are summed, of times and peaks the greatest is kept, and
- * means are over all points (each point is counted by one rank only). Bricks, nodes and evaluations
- * count twice where two ranks' boxes meet and both ranks evaluate them.
+ * Merges the ranks' statistics: sums counts, keeps the greatest of times and of peaks, and takes
+ * means over all points (one rank counts each point). Bricks, nodes and evaluations count twice
+ * where two ranks' boxes meet and both ranks evaluate them.
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
@@ -90,7 +90,7 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Samples of keys for each rank. With so many, the numbers of keys that ranks get differ by about an eighth. */
+/** Samples of keys for each rank. With this number, the numbers of keys that ranks get differ by about an eighth. */
 constexpr std::size_t SamplesPerRank = 64;
 
 /** Returns the end of each rank's range of keys, except the last rank's. All ranks get the same ends. */

@@ -32,7 +32,7 @@ constexpr double Rounding = 1.0001;
 /** The arrays of an input that are sent to other ranks. */
 using Members = std::vector<mcor_array mcor_input::*>;
 
-/** Returns the input `like` with the particles of `arrays` in place of the rank's own. No particle is solid. */
+/** Returns the input `like` with the particles of `arrays` in place of the rank's own. In the result, no particle is solid. */
 mcor_input ViewOf(const vtkSPHRanksArrays& arrays, const Members& members, const mcor_input& like)
 {
   mcor_input input = like;

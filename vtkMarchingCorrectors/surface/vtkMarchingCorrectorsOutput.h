@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: makes a vtkPolyData, and the statistics of the run, of the core's surface. */
+/** Private to the module: makes a vtkPolyData of the core's surface, and the statistics of the run. */
 #ifndef vtkMarchingCorrectorsOutput_h
 #define vtkMarchingCorrectorsOutput_h
 

@@ -167,7 +167,7 @@ def attributes(file, name):
 
 
 def period_of(file, box):
-    """Returns the six bounds of the period, or None unless the file says that the run is periodic: open runs have a BoxSize, too.
+    """Returns the six bounds of the period. Returns None if the file does not say that the run is periodic: open runs have a BoxSize, too.
     AREPO is periodic along the axes that its Config does not make REFLECTIVE. The box is BoxSize times LONG_X (AREPO), or
     divided by 2^LONG_X_BITS (GADGET-4)."""
     parameters, config = attributes(file, "Parameters"), attributes(file, "Config")

@@ -117,7 +117,7 @@ def walk(tree, empty=False):
 
 
 def leaves_of(tree, empty=False):
-    """Yields (data, name, flat index, iterator) of each leaf. Partitions have the name of their block."""
+    """Yields (data, name, flat index, iterator) of each leaf. A partition without a name has the name of its block."""
     whole, last = "", 0
     for at in walk(tree, empty):
         data, index = at.GetCurrentDataObject(), at.GetCurrentFlatIndex()

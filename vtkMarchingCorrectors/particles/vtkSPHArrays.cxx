@@ -194,7 +194,7 @@ void AddToRun(vtkFieldData*, vtkSPHHow, const char*, const T (&)[N])
 
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
 {
-  // Components: one for each phase, one for building programs, and the total; all begin at 0.
+  // The array has a component for each phase, one for building programs, and one for the total; all begin at 0.
   constexpr int build = MCOR_PHASE_COUNT, total = build + 1;
   vtkSmartPointer<vtkDataArray> seconds = run->GetArray("Seconds");
   if (!seconds)

@@ -21,8 +21,8 @@ VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /**
- * A margin around places, in cubes, so that even a plane of points, or a single line, has a box
- * with bricks to cut at.
+ * The margin, in cubes, around the places to evaluate. With the margin, even the box of a plane of
+ * points, or of a single line, contains bricks, so that space can be divided between them.
  */
 constexpr double MarginCubes = 4.0;
 
@@ -205,7 +205,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
 }
 
 // Sets the box to the bounds of the places, cut off at the bounds of the particles, with a margin.
-// Along periods the box is infinite.
+// Along periodic axes the box is infinite.
 void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double high[3])
 {
   const mcor_measure& measured = this->Globals.measured;

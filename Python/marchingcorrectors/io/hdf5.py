@@ -342,7 +342,7 @@ def integers(group, place):
 
 
 def read_vtkhdf(path, step):
-    """Reads one step of poly data or an unstructured grid: the points and their arrays. An array has all steps, one after the other. The
+    """Reads one step of poly data or an unstructured grid: the points and their arrays. An array holds all steps, one after the other. The
     group Steps tells where each step begins: its parts (PartOffsets, NumberOfParts), its points (PointOffsets), and arrays that begin
     elsewhere (PointDataOffsets)."""
     with h5py.File(path, "r") as file:

@@ -168,9 +168,9 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
  * left out: all particles beyond the measured bounds. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
-/* Copies from run.far to context->measure what statistics tell of absent particles. If far->is_cut,
- * also narrows the measured bounds, so that the lattice surrounds only the region. low, high: the
- * bounds of the positions of all particles in use. */
+/* Copies the absent particles' number, first index and place from run.far to context->measure, for
+ * the statistics. If far->is_cut, also narrows the measured bounds, so that the lattice surrounds
+ * only the region. low, high: the bounds of the positions of all particles in use. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
 /* Called when capacity does not suffice. If the least or the greatest smoothing length differs much

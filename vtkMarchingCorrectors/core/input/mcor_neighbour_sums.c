@@ -118,8 +118,9 @@ static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
   }
 }
 
-/* Measures the bounds of all ranks' particles along x, y, z, and cuts the bounds to
- * MCOR_MOST_WIDTHS beyond the middle half of sampled particles. Also sets job->extent. */
+/* Measures the bounds of all ranks' particles along x, y, z. Cuts them at MCOR_MOST_WIDTHS times
+ * a width beyond the middle half of sampled particles. The width is the half's longest side. Also
+ * sets job->extent. */
 static mcor_status mcor_measure_extent(
   mcor_context* context, mcor_neighbour_job* job, mcor_findings* bounds)
 {

@@ -196,8 +196,8 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual([extract.GetExcludedArray(i) for i in range(extract.GetNumberOfExcludedArrays())], ["Density", "Id"])
 
     def test_places(self):
-        """As long as a property equals its default, ParaView fits it to the particles' bounds. Such properties have no default here, so
-        that every value that a user sets is kept."""
+        """ParaView fits a property with a BoundsDomain to the particles' bounds as long as the property equals its default. So these
+        properties have no default; then every value that a user sets is kept."""
         fitted = [e for proxy in self.proxies for e in proxy.iter("DoubleVectorProperty") if e.find("BoundsDomain") is not None]
         self.assertEqual({e.get("default_values") for e in fitted}, {"none"})
         self.assertEqual(len(fitted), 9)

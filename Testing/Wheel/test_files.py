@@ -225,7 +225,7 @@ class Layouts(Case):
         self.assertLess(np.abs(particles.quantity("smoothing_length") - 2 * H).max(), 1e-12)
 
     def test_swiftsimio(self):
-        """swiftsimio, SWIFT's own reader, reads the same from a file."""
+        """swiftsimio, SWIFT's own reader, reads the same particles from a file as io.read()."""
         if not importlib.util.find_spec("swiftsimio"):
             self.skipTest("swiftsimio, which wheel.swift installs, is not here")
         import swiftsimio

@@ -436,7 +436,8 @@ static void test_magnitudes(void** state)
   }
 }
 
-/* Checks vectors whose components are finite, but not their magnitude or dot product. */
+/* Checks vectors with finite components whose magnitude or dot product is infinite, and a finite dot product
+ * whose single products are infinite. */
 static void test_bad_products(void** state)
 {
   const double far = 1.7e308;

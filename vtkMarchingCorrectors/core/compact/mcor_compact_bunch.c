@@ -19,7 +19,8 @@
 #include "mcor_cap.h"
 #include "mcor_compact.h"
 
-/* Most edges of a mcor_fan, one for each triangle around a bunch. A bunch with more stays apart. */
+/* A mcor_fan has at most this many edges: one for each triangle around a bunch. A bunch with more
+ * triangles around it is not merged. */
 #define MCOR_FAN_LIMIT 48
 
 /* Least number of vertices that a closed piece keeps: a surface 6, with 8 triangles; a line 4. */

@@ -45,11 +45,11 @@ real mcor_trim_fraction(real wa, real wb, real w)
 
 /* One work-item = one cut vertex. Writes the vertex's position, as the nearer end's node and an
  * offset. The weights are taken as linear along the mesh edge. The position is where the weight
- * equals the threshold, or where the fluid's own weight is the least that a mean needs, if this is
- * nearer to the end inside. The position stays away from the ends, because cut vertices of several
- * edges would meet at an end. The position's bits do not depend on the order of vertices. In place
- * of the gradient, writes the vector to the end inside, and as fourth number whether the fluid's
- * weight decided. */
+ * equals the threshold. But if the fluid's own weight sinks to the least that a Shepard mean needs
+ * nearer to the inner end, the position is there. The inner end is the one that is not trimmed. The
+ * position stays away from the ends, because cut vertices of several edges would meet at an end.
+ * The position's bits do not depend on the order of vertices. Writes the vector to the inner end in
+ * place of the gradient; its fourth number is whether the fluid's own weight decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)

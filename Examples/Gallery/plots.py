@@ -44,7 +44,7 @@ def shot(plotter, camera=((0.2, 2.0, 3.6), (1.62, 0.35, 0.0), (0, 1, 0)), zoom=0
 
 
 def legend_of(title):
-    return {"title": title, "color": "black", "position_x": 0.25, "position_y": 0.03}
+    return {"title": title + "\n", "color": "black", "position_x": 0.25, "position_y": 0.03}
 
 
 def flux():

@@ -78,6 +78,13 @@ char* mcor_append(char* text, const char* format, ...)
   __attribute__((format(printf, 2, 3)))
 #endif
   ;
+/* Returns the small letter of a letter in any locale; in a Turkish one, tolower('I') is no i. */
+static inline char mcor_small_letter(char c)
+{
+  return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+}
+/* Whether `part` occurs in `text`, ignoring case. */
+bool mcor_contains(const char* text, const char* part);
 /* Writes to out [size] the text with words in place of its slots, such as {cube_size}. A longer
  * result is cut. Returns the length of the whole result, as snprintf does. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);

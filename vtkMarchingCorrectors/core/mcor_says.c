@@ -180,6 +180,23 @@ char* mcor_append(char* text, const char* format, ...)
   return whole;
 }
 
+bool mcor_contains(const char* text, const char* part)
+{
+  for (; *text; ++text)
+  {
+    size_t i = 0;
+    while (part[i] && mcor_small_letter(text[i]) == mcor_small_letter(part[i]))
+    {
+      ++i;
+    }
+    if (!part[i])
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 mcor_message mcor_say(mcor_says code, const char* format, ...)
 {
   va_list arguments;

@@ -92,29 +92,6 @@ mcor_status mcor_list_devices(char** text)
   return MCOR_OK;
 }
 
-static char mcor_lower(char c)
-{
-  return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
-/* Whether `part` occurs in `text`, ignoring case. */
-static bool mcor_contains(const char* text, const char* part)
-{
-  for (; *text; ++text)
-  {
-    size_t i = 0;
-    while (part[i] && mcor_lower(text[i]) == mcor_lower(part[i]))
-    {
-      ++i;
-    }
-    if (!part[i])
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
 /* Returns the list index of the device that the user named; -1: there is none. wanted: the index or
  * a part of the name of the device or its platform. *by_number: whether `wanted` is a number. */
 static int mcor_find_device(const mcor_device_list* list, const char* wanted, bool* by_number)

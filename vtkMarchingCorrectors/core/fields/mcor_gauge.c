@@ -26,7 +26,7 @@
 #define MCOR_GAUGE_TOGETHER (1 << 20)
 /* The field is evaluated up to this many steps beyond the box. */
 #define MCOR_GAUGE_MARGIN 2.5
-#define MCOR_GAUGE_STEP 0.25 /* in smallest scaled smoothing lengths */
+#define MCOR_GAUGE_STEP(options, h_min) (0.25 * (options)->h_scale * (h_min))
 #define MCOR_GAUGE_LEAST_STEPS 4
 /* MCOR_GAUGE_MOST: the most samples of a line that are evaluated. MCOR_GAUGE_MOST_STEPS: the most
  * steps of a whole line, so that doubles can tell its samples apart. */
@@ -143,7 +143,7 @@ static mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   mcor_context* context = job->base.context;
   const mcor_gauge_line* line = &job->lines[number];
   const mcor_measure* m = &context->measure;
-  const double step = MCOR_GAUGE_STEP * context->run.options->h_scale * m->h_min;
+  const double step = MCOR_GAUGE_STEP(context->run.options, m->h_min);
   const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
   double clip[2] = { 0, 1 }; /* the part of the line that particles may reach */
   for (int a = 0; a < 3; ++a)
@@ -503,7 +503,7 @@ static mcor_status mcor_run_gauge(
   if (input->count > 0 && job.line_count > 0)
   {
     const double margin = options->globals
-      ? MCOR_GAUGE_MARGIN * (MCOR_GAUGE_STEP * options->h_scale * options->globals->measured.h_min)
+      ? MCOR_GAUGE_MARGIN * MCOR_GAUGE_STEP(options, options->globals->measured.h_min)
       : 0;
     MCOR_THEN(status, mcor_run_level(&job.base, input, options, margin, mcor_gauge_all));
   }

@@ -17,17 +17,11 @@ static const char* const mcor_wall_words[] = { "wall", "bound", "solid", "obstac
 
 int mcor_tells_of_walls(const char* name)
 {
-  char* small = mcor_text("%s", name ? name : "");
   int tells = 0;
-  for (char* c = small; c && *c; ++c)
+  for (size_t w = 0; name && w < sizeof mcor_wall_words / sizeof *mcor_wall_words; ++w)
   {
-    *c = mcor_small_letter(*c);
+    tells = tells || mcor_contains(name, mcor_wall_words[w]);
   }
-  for (size_t w = 0; small && w < sizeof mcor_wall_words / sizeof *mcor_wall_words; ++w)
-  {
-    tells = tells || strstr(small, mcor_wall_words[w]);
-  }
-  free(small);
   return tells;
 }
 

@@ -16,12 +16,6 @@
  * `name`, "_", "-", blanks and case do not matter. */
 bool mcor_is_usual_name(const char* name, const char* usual);
 
-/* Returns the small letter of a letter in any locale; in a Turkish one, tolower('I') is no i. */
-static inline char mcor_small_letter(char c)
-{
-  return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-}
-
 /* The state of mcor_find_input. */
 typedef struct mcor_finder
 {

@@ -18,6 +18,7 @@ from ._functions import free_surface, gauge, isosurface, probe
 from ._library import InvalidArgument, lib, say
 from .io.convert import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of
+from ._surface import save_npz, writing
 from ._usd import is_usd
 
 
@@ -242,7 +243,7 @@ def write_table(output, head, rows):
     """Writes a .csv file; NaN becomes an empty cell."""
     if not output.lower().endswith(".csv"):
         raise InvalidArgument(f"The output is a .csv file, not '{os.path.basename(output)}'.")
-    with open(output, "w", newline="") as file:
+    with writing(output), open(output, "w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(
             [head, *([cell if cell == cell else "" for cell in row] for row in rows)])
 
@@ -253,7 +254,7 @@ def run_probe(given, particles, points, make, command):
     arrays = found._point_arrays()
     ending = os.path.splitext(given.output)[1].lower()
     if ending == ".npz":
-        np.savez_compressed(given.output, points=points, **arrays)
+        save_npz(given.output, points=points, **arrays)
     elif ending == ".csv":
         columns = {}
         for name, values in {"": points, **arrays}.items():
@@ -268,7 +269,8 @@ def run_probe(given, particles, points, make, command):
         for name, values in arrays.items():
             mesh.point_data[name] = values.reshape(len(points), -1) if values.ndim > 2 else values
         try:
-            mesh.save(given.output)
+            with writing(given.output, mesh):
+                mesh.save(given.output)
         except ValueError:  # PyVista does not know the ending.
             raise InvalidArgument(f"The output is a {COMMANDS[command][2]} file, not '{os.path.basename(given.output)}'.") from None
     return f"{len(points)} points, {int(found.valid.sum())} of them in the fluid"

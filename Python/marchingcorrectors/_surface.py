@@ -3,8 +3,13 @@
 """Results of the functions: a surface, samples, derivatives, an image, gauges, fluxes."""
 from __future__ import annotations
 
+import contextlib
 import csv
+import errno
+import io
+import os
 import re
+import shutil
 from dataclasses import dataclass, field as dataclass_field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
@@ -15,8 +20,6 @@ from ._options import camel
 from ._library import InvalidArgument, warn
 
 if TYPE_CHECKING:
-    import os
-
     import meshio
     import pyvista
     import trimesh
@@ -53,6 +56,31 @@ class Result:
             elif isinstance(value, dict) and value and f.name in ("attributes", "values", "gradients"):
                 names.append(f"{f.name} of {', '.join(value)}")
         return "; ".join(names) or "none"
+
+
+@contextlib.contextmanager
+def writing(path, mesh=None):
+    """Lets the system's errors name the file that the block writes. mesh: what the block writes by VTK's writers. On a full disk, they may end
+    the process, or write a part of the file without a word, and then some bytes more do not fit, either."""
+    try:
+        if mesh is not None and shutil.disk_usage(os.path.dirname(os.path.abspath(path))).free < 1024 * mesh.actual_memory_size:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        yield
+        if mesh is not None and os.path.isfile(path):
+            with open(path, "r+b") as file:
+                size = file.seek(0, os.SEEK_END)
+                file.write(bytes(1 << 17))
+                file.truncate(size)
+    except OSError as error:
+        raise OSError(error.errno or errno.EIO, error.strerror or "VTK cannot write it", os.fspath(path)) from None
+
+
+def save_npz(path, **arrays):
+    """Writes the arrays from memory, because on a full disk NumPy closes its file twice, with a traceback."""
+    held = io.BytesIO()
+    np.savez_compressed(held, **arrays)
+    with writing(path):
+        Path(path).write_bytes(held.getbuffer())
 
 
 CELLS = ("points", "triangles", "triangle_keys", "line_points", "line_offsets", "band_value")
@@ -173,7 +201,7 @@ class Surface(Result):
         if ending == ".npz":
             arrays = {f.name: getattr(self, f.name) for f in fields(self)
                       if isinstance(getattr(self, f.name), np.ndarray)}
-            np.savez_compressed(path, **arrays, **{f"attributes/{k}": v for k, v in self.attributes.items()})
+            save_npz(path, **arrays, **{f"attributes/{k}": v for k, v in self.attributes.items()})
         elif ending == ".ply":
             _save_ply(path, self)
         elif ending == ".csv":
@@ -186,12 +214,15 @@ class Surface(Result):
         elif ending in (".vtp", ".vtk", ".stl", ".obj"):
             has_lines = ending[1] == "v" or not len(self.triangles)
             surface = self if has_lines else replace(self, line_offsets=None, line_points=None, band_value=None)
-            surface.to_pyvista().save(path)
+            mesh = surface.to_pyvista()
+            with writing(path, mesh):
+                mesh.save(path)
         elif ending:
             import meshio
 
             try:
-                self.to_meshio().write(path)
+                with writing(path):
+                    self.to_meshio().write(path)
             except meshio.ReadError:
                 raise InvalidArgument(f"{path.name} was not written, because no format of that ending is known. Formats that hold "
                                       "all arrays are .npz, .ply and .vtp.") from None
@@ -223,7 +254,7 @@ def _save_csv(path, surface):
             name += "_"
         values = (values.astype(np.uint8) if values.dtype == bool else values)[taken]
         columns[name] = [("" if each != each else each + 0.0) if values.dtype.kind == "f" else each for each in values.tolist()]
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with writing(path), open(path, "w", newline="", encoding="utf-8") as file:
         head = ["'" + name if name.startswith(("=", "+", "-", "@")) else name for name in columns]  # Spreadsheets must not take a text for a formula.
         csv.writer(file, lineterminator="\n").writerows([head, *zip(*columns.values())])
 
@@ -251,7 +282,7 @@ def _save_ply(path, surface):
     points = np.rec.fromarrays(list(columns.values()), [(name, "<" + column.dtype.str[1:]) for name, column in columns.items()])
     faces = np.zeros(len(surface.triangles), [("count", "u1"), ("corners", "<u4", 3)])
     faces["count"], faces["corners"] = 3, surface.triangles
-    with open(path, "wb") as file:
+    with writing(path), open(path, "wb") as file:
         for part in ("\n".join(lines).encode(errors="replace"), points.tobytes(), faces.tobytes()):
             file.write(part)
 

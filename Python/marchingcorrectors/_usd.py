@@ -85,6 +85,7 @@ class Film:
         try:
             self._layer = Sdf.Layer.CreateNew(written)
         except Tf.ErrorException as error:
+            self._outputs.__exit__(Tf.ErrorException)
             raise self._failure(error) from None
         self._layer.comment = "by marching-correctors"
         self._stage = Usd.Stage.Open(self._layer)
@@ -189,7 +190,8 @@ class Film:
         self._unsaved = 0
 
     def _failure(self, error):
-        return FileError(f"{self.path} could not be written: {' '.join(str(error).split())[:200]}")
+        words = str(error).partition(" : '")[2].partition("'")[0] or str(error)  # of the first of USD's errors
+        return FileError(f"{self.path} could not be written: {' '.join(words.split())[:200]}")
 
     def __exit__(self, kind: Any, *_: Any) -> None:
         ended = kind is not None and issubclass(kind, (KeyboardInterrupt, SystemExit))

@@ -103,17 +103,17 @@ class Convert(Case):
 
     @unittest.skipUnless(sys.platform == "linux", "needs a file system of its own")
     def test_full_disk(self):
-        script = ('mount -t tmpfs -o size=8k none full || exit 77; printf old >full/o.vtp; "$@"; status=$?; ls -A full; '
-                  'cat full/o.vtp; exit $status')
+        script = ('mount -t tmpfs -o size=8k none full || exit 77; printf old >full/$0; "$@" full/$0; status=$?; ls -A full; '
+                  'cat full/$0; exit $status')
         self.at("full").mkdir()
-        done = subprocess.run(["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else []) +
-                              ["sh", "-c", script, "sh", sys.executable, "-m", "marchingcorrectors", "convert",
-                               "run_0000.vtp", "full/o.vtp"], cwd=self.folder, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True)
-        if "unshare" in done.stderr or done.returncode == 77:
-            self.skipTest("no file system can be mounted here")
-        self.assertEqual(done.stdout, "o.vtp\nold")
-        self.refuse(done, "o.vtp could not be written: No space left on device")
+        for name, *words in (("o.vtp", "convert"), *((f"o.{ending}", "surface", "--smoothing-length", "5") for ending in ("npz", "obj", "vtp"))):
+            done = subprocess.run(["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else []) + [
+                "sh", "-c", script, name, sys.executable, "-m", "marchingcorrectors", *words, "run_0000.vtp"], cwd=self.folder,
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+            if "unshare" in done.stderr or done.returncode == 77:
+                self.skipTest("no file system can be mounted here")
+            self.assertEqual(done.stdout, f"{name}\nold")
+            self.refuse(done, f"{name} could not be written: No space left on device")
 
     @unittest.skipIf(os.name == "nt", "Windows has neither limits nor modes")
     def test_links_and_modes(self):

@@ -206,13 +206,16 @@ class Outputs:
     def __enter__(self):
         return self
 
-    def __exit__(self, kind, *_):
+    def __exit__(self, kind, error=None, *_):
         try:
-            for beside, target in self._written if kind is None else ():
+            for beside, target in self._written:
                 with _sentences(target):
-                    if os.path.exists(target):
-                        _copy_mode(target, beside)
-                    os.replace(beside, target)
+                    if kind is None:
+                        if os.path.exists(target):
+                            _copy_mode(target, beside)
+                        os.replace(beside, target)
+                    elif getattr(error, "filename", None) == beside:
+                        raise error
         finally:
             self._clear()
 

@@ -477,8 +477,8 @@ class Options(CommandLineTest):
         self.assertAlmostEqual(length, 1.2 * 3 ** 0.5 * 0.1)
 
     def test_settings(self):
-        """Each row has options; the parameters that they set in the statistics; and other options that must make the same surface, if there
-        are any. test_modes.py tries each option."""
+        """Each row has options, and the parameters that the statistics must then show. It may also have other options that must make the
+        same surface. test_modes.py tries each option."""
         half, walls = 5 * files.SPACING, ["--fluid", "Kind=0", "--solids"]
         self.arrays["7"] = self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)

@@ -47,8 +47,8 @@ class Meter(CommandLineTest):
         self.assertEqual(len(lines), 2)
 
     def test_times(self):
-        """A file's time is used, also if there is only one file. Several files without times are dt apart if all store the same dt, else 1
-        apart; a warning names these times or dt."""
+        """A file's time is used, also if there is only one file. If several files have no times, the steps are dt apart if all files store
+        the same dt, else 1 apart. A warning names dt, or the times."""
         for step in range(3):
             for name in ("step", "timed"):
                 files.write_vtp(self.directory / f"{name}_{step}.vtp", *files.drop_at(0.05 * step))

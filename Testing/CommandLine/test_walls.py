@@ -59,8 +59,7 @@ class Walls(CommandLineTest):
         self.assertNotIn("IsWall", text)
 
     def test_film(self):
-        """Steps are interpolated even if walls and fluid use the same numbers, because the particles of each body are
-        counted from 0."""
+        """Each body counts its particles from 0, so walls and fluid have the same ids. Steps are interpolated all the same."""
         numbers = {0: 0, 1: 0}
         self.arrays["Idp"] = []
         for kind in self.arrays["Kind"]:

@@ -56,7 +56,7 @@ static const cl_icd_dispatch* real(const void* object)
   return &driver->functions;
 }
 
-/* Defines try_NAME, which fails or calls the driver's NAME. object: the parameter that tells the driver. */
+/* Defines try_NAME, which fails or calls the driver's NAME. object: the parameter that says which driver is called. */
 #define FAULT_CALL(name, object, parameters, arguments)                                            \
   static cl_int try_##name parameters                                                              \
   {                                                                                                \

@@ -53,8 +53,8 @@
       core_status_ == MCOR_OK, #call, mcor_status_name(core_status_), mcor_last_error(context));   \
   } while (0)
 
-/* Returns whether the message, or the context's last failure, has all of these words, which | separates. A word is the
- * code (ISO_OUTSIDE) or a part of the text. */
+/* Each returns whether all words, separated by |, are in the message, or in the message of the context's last failure.
+ * A word is the message's code (ISO_OUTSIDE) or a part of its text. */
 bool core_tells(const mcor_message* message, const char* words);
 bool core_told(const mcor_context* context, const char* words);
 
@@ -137,7 +137,7 @@ uint64_t core_hash_of(mcor_context* context, const mcor_input* input, const mcor
 
 /* Fails unless the surface is an oriented manifold without degenerate triangles and without coincident points. */
 mesh_report core_check_mesh(const mcor_surface* surface);
-/* Like core_check_mesh, but points may coincide: an edge has two if only two opposite cells at the edge are valid. */
+/* Like core_check_mesh, but an edge may have two coincident points if only two opposite cells around it are valid. */
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
 /* Does what core_check_mesh does, and fails unless exactly the points of the mesh's boundary are flagged. */
 void core_check_flags(const mcor_surface* surface);

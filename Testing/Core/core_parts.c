@@ -154,7 +154,7 @@ void core_set_box(mcor_options* options, const core_cut* cut, const int at[3])
   }
 }
 
-/* The whole surface, and the statistics that its boxes' statistics must add up to. */
+/* The surface without boxes, and its statistics. The surfaces and statistics of all boxes must add up to it. */
 typedef struct core_whole
 {
   core_triangles triangles;

@@ -444,7 +444,7 @@ static void test_profile(void** state)
     {
       CORE_CHECK(fabs(found.phases[p] - surface.statistics.seconds[p]) < 1e-8, "phase %d: %g s", p,
         found.phases[p]);
-      /* A launch may take longer than its phase, whose seconds leave out the building of programs. */
+      /* The seconds of a phase leave out the building of programs, so a launch may take longer than its phase. */
       CORE_CHECK(found.commands[p] > 0 &&
           found.commands[p] < found.phases[p] + surface.statistics.build_seconds + 0.01,
         "phase %d: %g s of commands in %g s", p, found.commands[p], found.phases[p]);

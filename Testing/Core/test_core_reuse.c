@@ -313,8 +313,8 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   assert_true(!surface.points && surface.point_count == 0);
 }
 
-/* A failed call may have other data and new versions. Later calls with these data, and calls with the earlier data,
- * must give the right results. */
+/* A failed call may have other data, with new version numbers. Later calls with the failed call's data, and later calls
+ * with the earlier data, must give the right results. */
 static void test_failed_calls(void** state)
 {
   mcor_context* context = *state;

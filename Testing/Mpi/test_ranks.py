@@ -252,7 +252,7 @@ def compare_surfaces(whole, parts):
 
 
 def compare_told(whole, all_told):
-    """Returns the names of reported values that differ between the ranks and rank 0 alone, and "EstimatedCells" if it is not
+    """Returns the names of values that a run on all ranks and a run of rank 0 alone report differently, and "EstimatedCells" if it is not
     above 0."""
     unknown = [("NextScalarRange", i) for i in range(2) if whole["NextScalarRange", 1] == 0]  # One process does not sum densities ahead.
     return [name for told in all_told for name, value in told.items() if name[0] == "EstimatedCells" and value <= 0
@@ -322,7 +322,7 @@ def sample(kind, settings, particles, points, controller):
 
 
 def check_sample(number, name, file, constant, kind, settings):
-    """Tests one case of samples. Returns what differs on this rank."""
+    """Tests one case of a probe or of derivatives. Returns what differs on this rank."""
     particles = read(os.path.join(FOLDER, file + ".vtp"))
     add(particles, **{INDEX: np.arange(particles.GetNumberOfPoints())})
     if constant is not None:

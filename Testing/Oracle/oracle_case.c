@@ -189,7 +189,7 @@ static void case_check_accuracy(case_run* run, int trimmed)
     /* Pieces of the surface that trimming leaves may be too small to judge their orientation by the gradient. */
     CASE_EXPECT(run, trimmed || c->inverted_components == 0, c->inverted_components);
     CASE_EXPECT(run, c->gradient_error <= (single ? 1e-4 : 1e-9), c->gradient_error);
-    /* At a kernel's rim w has few digits in single precision. */
+    /* Near the support radius, W has few correct digits in single precision. */
     CASE_EXPECT(run, c->rim_gradient_error <= (single ? 2e-4 : 1e-9), c->rim_gradient_error);
   }
 }
@@ -198,8 +198,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
  * right. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
-  /* A threshold of 0 trims only Shepard means, where the fluid's weight is nearly 0. A sum by a kernel with negative
-   * lobes gets 0.05, because with a far too small h the weight at a vertex may be 0 or less. */
+  /* A threshold of 0 trims only Shepard means, where the fluid's weight is nearly 0. A sum with a kernel that has
+   * negative lobes gets the threshold 0.05, because the weight at a vertex may be 0 or less if h is far too small. */
   const int lobes =
     run->at->options.sph_kernel == MCOR_M_PRIME_4 && run->at->options.field == MCOR_SUM;
   const int cut = trimmed || lobes || run->at->options.field == MCOR_SHEPARD;
@@ -209,8 +209,7 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   run->options.vertex_threshold = trimmed ? run->at->options.vertex_threshold : lobes ? 0.05 : 0.0;
   if (!trimmed)
   {
-    /* The eigenvalue must not trim here: for a singular matrix rounding may put it below the
-     * threshold 0. */
+    /* The eigenvalue must not trim here: rounding may put the eigenvalue of a singular matrix below the threshold 0. */
     run->options.boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM;
     /* With this wall share the surface ends at no solid, but solids still count in the free
      * surface's weight. */

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes levels, bricks and nodes. */
+/* Makes the oracle's lattice: the levels of particles, the bricks (4 x 4 x 4 cells), and the nodes. */
 
 #include "oracle_lattice.h"
 

@@ -117,10 +117,10 @@ void oracle_own_period(
   }
 }
 
-/* ---- the surface against itself ---- */
+/* ---- joining the surface with itself ---- */
 
-/* A point of the surface's border, moved into the first period. Its place (at) is in whole units
- * that are larger than rounding, but too small to matter. */
+/* A point of the surface's border, moved into the first period. at: its place, as whole multiples of 2^-27 of a cube's
+ * edge, so that rounding errors do not show. */
 typedef struct seam_point
 {
   int64_t at[3];

@@ -18,9 +18,9 @@ extern "C"
   /* Returns whether the particles repeat along any axis. */
   int oracle_is_periodic(const mcor_options* options);
 
-  /* Writes the edges of cubes along x, y, z: the largest edge up to `cube` that divides all periods. If this is less
-   * than half of `cube`, each axis gets the largest edge up to `cube` that divides its own period (without a period,
-   * the longest of these). */
+  /* Writes the edges of cubes along x, y, z; none is larger than `cube`. All get the largest edge that divides all
+   * periods, if it is at least half of `cube`. Else an axis gets the largest edge that divides its own period; an axis
+   * without a period gets the longest edge of the other axes. */
   void oracle_fit_edges(const mcor_options* options, double cube, double edge[3]);
 
   /* Moves the particles into the period, and adds all images that matter. An image reaches as far as its support (h

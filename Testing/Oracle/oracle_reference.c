@@ -89,7 +89,7 @@ static void reference_edges(
   oracle_fit_edges(options, cube, edge);
 }
 
-/* Adds all images of a periodic box as particles. */
+/* Moves the particles into the period, and adds their images as particles, see oracle_add_images. */
 static int64_t* reference_images(
   particle_set* particles, const mcor_options* options, oracle_kernel kernel, int own_volumes)
 {

@@ -124,8 +124,8 @@ static int lattice_decide_face(const oracle_decider* decider, const double value
   return sample.value > decider->limits->iso;
 }
 
-/* Returns what lattice_decide_face returns for a face of a cell, or 0, as in the case table, if the field does not
- * decide. */
+/* Returns what lattice_decide_face returns for a face of a cell. If the field does not decide the face, returns 0, as
+ * the case table has it. */
 static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int face)
 {
   static const int stride[3] = { 1, 3, 9 };
@@ -154,7 +154,7 @@ static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int
   return lattice_decide_face(lattice->decider, value, corner, edge, u, v);
 }
 
-/* The segments of a cell: next[n] follows edge[n] on its loop. */
+/* The segments of a cell: segment n leads from the crossed edge edge[n] to the crossed edge next[n]. */
 typedef struct lattice_links
 {
   int count;
@@ -193,7 +193,7 @@ static int lattice_ambiguous(const oracle_lattice* lattice, const int64_t* ring,
     !lattice_above(lattice, ring[0]) != !lattice_above(lattice, ring[1]);
 }
 
-/* Adds the pairs of a square's crossed edges to `pairs`. */
+/* Adds each pair of a square's crossed edges to `pairs`, which counts the valid cells that have the pair. */
 static void lattice_add_pairs(oracle_lattice* lattice, oracle_map* pairs, const lattice_cell* cell,
   const int64_t* ring, int count)
 {

@@ -18,7 +18,7 @@ static double pick(uint64_t* state, const double* values, int count)
   return values[random_bits(state) % (uint64_t)count];
 }
 
-/* Below this seed only the first five kernels are used: these seeds found faults when there were no other kernels. */
+/* Seeds below this number use only the first five kernels: such seeds found faults when there were no other kernels. */
 #define SEEDS_OF_FIVE_KERNELS 1000
 
 static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, double* iso)

@@ -112,8 +112,7 @@ def first_apply(folder):
 
 
 def empty_first(folder):
-    """The panel says that the first output is empty. The first output that is not empty gets the colours that a first output usually
-    gets."""
+    """If the first output is empty, the panel says so, and the first output that is not empty gets the colours in its place."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),

@@ -10,7 +10,7 @@ from paraview.simple import (GetActiveViewOrCreate, LoadPlugin, PointSource, Ren
 
 
 def show_panel(source, **properties):
-    """Selects the filter, which builds its panel with all widgets and decorators."""
+    """Makes the filter the active source, so that ParaView builds its panel with all widgets and decorators."""
     extract = MarchingCorrectors(Input=source)  # noqa: F821, LoadPlugin made it
     SetActiveSource(extract)
     for name, value in properties.items():

@@ -79,7 +79,8 @@ def make_cases(folder):
 
 
 def make_found(folder):
-    """Makes files of particles in which the roles of arrays must be found. Returns {name: [file, words that --list-arrays prints, or None]}."""
+    """Makes files in which programs must find smoothing lengths, volumes, fluid and so on. Returns {name: [file, words that --list-arrays
+    prints, or None]}."""
     def of(name, *arrays, **more):
         return write(folder, "found " + name, *arrays, **more)
 

@@ -79,7 +79,7 @@ def write_phantom(path):
 
 
 def write_native(path):
-    """Writes a dump in Phantom's own format, blocks as Fortran writes them, with the parts that sarracen reads."""
+    """Writes a dump in Phantom's own format. It has the parts that sarracen reads, each between its lengths, as Fortran writes them."""
     def block(data):
         return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
 
@@ -488,8 +488,8 @@ class Layouts(Case):
         self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
 
     def test_lists(self):
-        """Pieces that a list names are one set. Copies that a piece has of another piece's particles are left out. If a list names a part
-        twice for one time, the later one counts."""
+        """The pieces that a list names are read as one set. If a piece has copies of another piece's particles, the copies are left out. If
+        a list names two files for the same part and time, the later file counts."""
         def write(name, numbers, ghosts=()):
             text = " ".join(map(str, numbers))
             self.at(name).write_text(

@@ -23,7 +23,7 @@ WORDS = ("O", "H2", "Ar")
 
 
 def random_rows(random, columns):
-    """Returns rows of random numbers as text, in a form that programs write."""
+    """Returns rows of random numbers as text. All numbers have one format, chosen from those that programs write."""
     count = random.integers(1, 60)
     form = random.choice(["%.17g", "%.6e", "%12.5f"])
     values = random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))

@@ -45,7 +45,7 @@ static const char source[] =
   "  inside[b] = mcor_seed_proof(&grid, boxes[b], false, &wide, iso) == MCOR_ABOVE;\n"
   "}\n";
 
-/* The particles as the device has them; lengths are in cubes. */
+/* The particles as the device has them. The unit of length is a cube's edge. */
 typedef struct particles
 {
   int count;

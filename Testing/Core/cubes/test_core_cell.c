@@ -154,7 +154,8 @@ static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed
   return tunnel > 0 ? first + tunnel : row;
 }
 
-/* Makes and checks the triangles of all cells, with random decisions on faces and tunnels. Marks the rows in `used`. */
+/* Makes and checks the triangles of all cells, with random decisions on faces and tunnels. Marks in `used` which rows
+ * of the case table the cells take. */
 static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS])
 {
   const int n = l->ends;
@@ -217,7 +218,7 @@ static void test_first_rows(void** state)
   {
     const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
     uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
-    /* Bits of some middle nodes, which do not exist here, are set: these bits must not matter. */
+    /* Bits of some nodes between corners are set, though only corners exist here: these bits must not matter. */
     uint32_t above = 0x2aaaaaa;
     int flat = 0;
     for (int k = 0; k < 8; ++k)

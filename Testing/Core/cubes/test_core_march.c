@@ -93,7 +93,7 @@ typedef struct node_pattern
 {
   int sign[NODES * NODES * NODES]; /* x fastest; 0: no particle */
   int64_t points, triangles;       /* of the surface that the pattern must give */
-  /* How many edges have two vertices: [axis][which two opposite cells are valid]. */
+  /* Edges with two vertices, because only two opposite cells around them are valid: [axis][which two]. */
   int64_t pinched[3][2];
 } node_pattern;
 

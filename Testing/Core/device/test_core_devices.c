@@ -97,7 +97,8 @@ static void check_programs(const mcor_input* input, const mcor_options* options)
   CORE_CHECK(built == (wanted | 1 << MCOR_PROGRAM_TRIM), "programs %x were used, not %x", (unsigned)built, (unsigned)wanted);
 }
 
-/* With pairs, in a box, and of adaptive cubes with curvature and nearest particles, mcor_list_programs names the programs used. */
+/* mcor_list_programs must name the programs that a run uses: with MCOR_PAIRS; with a box; with adaptive cubes,
+ * curvature and nearest particles. */
 static void test_programs_of_runs(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
@@ -150,8 +151,8 @@ static void test_building_ahead(void** state)
   unsetenv("MCOR_THREADS");
 }
 
-/* A part of the particles without solids counts as having solids if the globals are of a whole set
- * with solids: both need the same programs. Ignored solids do not count. */
+/* If global values were measured with solids, a part of the particles counts as having solids, even if it has none: the
+ * whole and its parts need the same programs. Ignored solids do not count. */
 static void test_solids_of_parts(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);

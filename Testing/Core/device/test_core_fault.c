@@ -161,8 +161,8 @@ static void expect_right(mcor_context* context, const sweep* s)
   CORE_CHECK(hash == s->expected, core_failed_call());
 }
 
-/* Checks, after a fault that made the call fail, that the message has `words` or tells of an allocation, that nothing
- * is left over, and that the next call is right. */
+/* The call has failed because of a fault. Checks that its message has `words` or tells of an allocation, that it has
+ * left no buffers behind, and that the next call is right. */
 static void expect_sound(mcor_context* context, const sweep* s, const char* words)
 {
   const char* sentence = mcor_last_error(context);
@@ -580,8 +580,8 @@ static void test_profile_without_device(void** state)
   core_fail_command(0, CL_DEVICE_NOT_AVAILABLE);
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   core_fail_nothing();
-  /* If the failed call is not clCreateContext, the built-in device has all kernels, and no other
-   * device was needed. */
+  /* If the built-in device lacks kernels, a second device is needed, and its clCreateContext fails. Else another call
+   * fails. */
   const bool is_replaced = strcmp(core_failed_call(), "clCreateContext") == 0;
   CORE_CHECK(!is_replaced || (status == MCOR_DEVICE_ERROR && core_told(context, "clCreateContext")),
     mcor_status_name(status), mcor_last_error(context));

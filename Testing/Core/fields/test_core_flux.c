@@ -237,7 +237,7 @@ static void test_uniform_in_a_plane(void** state)
 static const double gauss_at[3] = { -0.7745966692414834, 0, 0.7745966692414834 };
 static const double gauss_share[3] = { 5 / 18.0, 8 / 18.0, 5 / 18.0 };
 
-/* Returns point i of n Gauss points on [low, high], three in each of n / 3 parts, and its share of the length. */
+/* Returns point i of n Gauss points: [low, high] has n / 3 parts of three points each. *share: the point's weight. */
 static double gauss_point(double low, double high, int i, int n, double* share)
 {
   const double part = (high - low) / (n / 3);

@@ -36,9 +36,9 @@ static mcor_samples probe(mcor_context* context, const particle_set* set,
   return samples;
 }
 
-/* Compares all samples at one point with the oracle. scale: the size of the array's values. Returns the number
- * that allowed errors of gradients are relative to: if `steep`, the largest component of the expected gradient, but at
- * least 1; else 1. */
+/* Compares all samples at one point with the oracle. scale: the size of the array's values. steep: errors of gradients
+ * are divided by the largest component of the expected gradient, if this is above 1. Returns the divisor, which is 1 if
+ * not `steep`. */
 static double probe_compare(const oracle_field* field, const double point[3], double threshold,
   double scale, bool steep, double tolerance, const mcor_samples* samples, int64_t i)
 {
@@ -125,8 +125,8 @@ static void test_against_oracle(void** state)
   }
 }
 
-/* Smoothing lengths differ by a factor of 1000. Allowed errors are relative: for weights to the weight, for gradients
- * to the gradient's largest component; to 1 if these are below 1. */
+/* Smoothing lengths differ by a factor of 1000. Errors are divided before they are compared: errors of weights by the
+ * weight, errors of gradients by the gradient's largest component, but never by less than 1. */
 static void test_wide_range_against_oracle(void** state)
 {
   CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);
@@ -166,7 +166,7 @@ static void test_wide_range_against_oracle(void** state)
 }
 
 /* Probes two arrays at points in a cube of edge `size`, then at half of the points in another order. The bits at each
- * point must be the same. The 12 components make more than one round of sums. */
+ * point must be the same. The arrays have 12 components together, so that the sums take more than one round. */
 static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
 {
   CORE_SET set = core_make_random(2000, size, h_min, h_max, 3);

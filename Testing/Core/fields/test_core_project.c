@@ -175,7 +175,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
                reach = (kernel == MCOR_M_PRIME_4 ? 3.5 : oracle_support((oracle_kernel)kernel)) * h;
   CORE_SET set = particle_set_make(is_plane ? 3 : 1);
   const double x[3] = { 3.1, -2.3, 1.7 };
-  /* The other two particles lie beyond the image. Three particles define a plane. */
+  /* If is_plane, two more particles define the plane. They lie beyond the image. */
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i] = x[0] + (i == 1) * 1e4;

@@ -156,7 +156,7 @@ static void test_other_globals(void** state)
   }
 }
 
-/* ---- Changed by another thread, all the time ---- */
+/* ---- Positions that another thread changes all the time ---- */
 
 typedef struct writer
 {

@@ -42,8 +42,7 @@ static void find(
   assert_int_equal(mcor_find_input(request, &positions, arrays, count, NULL, found), MCOR_OK);
 }
 
-/* Frees the last result, and checks that finding anew fails with a message in which core_tells
- * finds the words. */
+/* Frees the last result. Checks that a new search fails, and that its message has the words (see core_tells). */
 static void refuse(const mcor_request* request, const mcor_named* arrays, int count,
   mcor_found* found, const char* words)
 {

@@ -139,8 +139,8 @@ static void test_share(void** state)
   }
 }
 
-/* Checks that a measured share gives the same surface as the same share set by hand: with the search grid kept from
- * another share, and with global values. */
+/* Checks that a measured wall share gives the same surface as this share set by hand. The share is measured after a
+ * call with another share, whose search grid is kept, and with global values. */
 static void test_measured(void** state)
 {
   CORE_SET set = make_tank();

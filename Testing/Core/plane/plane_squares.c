@@ -13,7 +13,7 @@ typedef struct plane_node
   int above, valid, close; /* close: rounding may decide the side */
 } plane_node;
 
-/* A piece of a square's side between two nodes on different sides. */
+/* A side of a square, or a half of one, between a node above iso and a node below iso. */
 typedef struct plane_edge
 {
   int64_t at[2], length; /* lower end; in the smallest squares */

@@ -58,7 +58,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
   if (line && !sides[0] && !sides[1])
   {
-    /* If iso values are equal, only one of them has bands beside its line. */
+    /* No bands lie beside this line. So several iso values are equal, of which only one has bands. */
     int times = 0;
     for (int i = 0; i < f->options->iso_count; ++i)
     {

@@ -181,8 +181,8 @@ static void test_sentences_of_sides(void** state)
   assert_int_equal(flat.line_count, 0);
 }
 
-/* Walls in another plane than the fluid are refused unless they are ignored, also if the dimension is automatic. Walls
- * in no plane are refused in two dimensions; if the dimension is automatic, they make it three. */
+/* If walls lie in another plane than the fluid, a call is refused, also with an automatic dimension, unless it ignores
+ * walls. If walls lie in no plane, two dimensions are refused, and an automatic dimension becomes three. */
 static void test_walls_in_another_plane(void** state)
 {
   CORE_SET set = plane_make(10, 0.1, 1, 1, -2, 7);

@@ -179,7 +179,7 @@ static void test_nearest(void** state)
   check_nearest(*state, 4, 0);
 }
 
-/* Checks that the greatest terms of area and volume are found, whichever thread's slice of the triangles has them. */
+/* Checks that the greatest area and volume of a single triangle are found in any thread's slice of the triangles. */
 static void test_greatest_terms(void** state)
 {
   enum

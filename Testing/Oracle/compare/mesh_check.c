@@ -90,7 +90,7 @@ static int mesh_compare_sides(const void* x, const void* y)
   return (p->triangle > q->triangle) - (p->triangle < q->triangle);
 }
 
-/* ---- union of corners (fans) and triangles (components) ---- */
+/* ---- union-find: corners are joined to fans, triangles to components ---- */
 
 static int64_t mesh_root(int64_t* parent, int64_t n)
 {
@@ -198,8 +198,8 @@ static int mesh_compare_triples(const void* x, const void* y)
   return (p[3] > q[3]) - (p[3] < q[3]);
 }
 
-/* Counts a fault for equal triples. quads: [count][4], a triple and the number of the point or
- * triangle that it belongs to. */
+/* Counts a fault for each two equal triples. quads: [count][4]; each row is a triple, then the number of its point or
+ * triangle. */
 static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, mesh_report* report)
 {
   qsort(quads, (size_t)count, 4 * sizeof(double), mesh_compare_triples);

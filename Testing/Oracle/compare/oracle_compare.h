@@ -18,15 +18,15 @@ extern "C"
 /* If a point has less fluid weight than this, it counts as at the rim of a kernel. */
 #define COMPARE_RIM 1e-6
 
-  /* A field on its lattice, classified for one iso value. */
+  /* What the oracle finds for one input and one iso value: the field, the lattice's nodes, cells and crossed edges. */
   typedef struct oracle_reference
   {
     particle_set particles;
     oracle_field field;
     oracle_lattice lattice;
     oracle_limits limits;
-    /* The range of the scalar over fluid particles; if all scalars are equal, their magnitude, or 1 if they are 0. For
-     * the free surface, it is greatest_weight. */
+    /* The largest minus the smallest scalar of fluid particles. If all scalars are equal, it is the scalar's magnitude;
+     * if all are 0, it is 1. For the free surface, it is greatest_weight. */
     double range;
     double greatest_weight; /* of the nodes, at least 1 */
     double unit;            /* roundoff of the working precision */
@@ -65,8 +65,8 @@ extern "C"
     int64_t trim_vertices, trim_linear;
     int64_t
       trim_avoidable; /* linear cuts for which an exact one (f = iso, w = threshold) exists within a cube */
-    /* The greatest errors at vertices that trimming placed exactly: of the trimming margin, which should be 0, and of
-     * the value. If the eigenvalue trims, "weight" here and below means the eigenvalue. */
+    /* At vertices that trimming placed exactly: the greatest trimming margin, which should be 0, and greatest residual.
+     * If the eigenvalue trims, "weight" here and below means the eigenvalue. */
     double trim_weight_error, trim_residual;
     int64_t below_threshold; /* vertices kept although their weight is too low */
     int64_t unsettled;       /* nodes and cells at the surface whose state rounding decides */

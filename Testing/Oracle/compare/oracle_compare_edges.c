@@ -38,9 +38,9 @@ static void compare_note_edge(compare_state* state, const char* what, const latt
 
 /* ---- vertices ---- */
 
-/* Finds the crossed edges that a point may lie on, ends included, and that still lack a vertex (a pinched edge has
- * two). Returns how many there are. *axis: the axis of the edge inside which the point lies; -1: the point is on a
- * node; -2: it is on no line of the lattice. */
+/* Finds the crossed edges, ends included, on which a point may lie, and which still lack a vertex. (If compare_pinched,
+ * an edge needs two vertices.) Returns how many edges it found. *axis: the axis of the edge inside which the point
+ * lies; -1: the point is on a node; -2: it is on no line of the lattice. */
 static int compare_candidates(
   compare_state* state, const double point[3], int64_t candidates[COMPARE_CANDIDATES], int* axis)
 {
@@ -150,8 +150,8 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* Returns whether trimming made a vertex that lies at no expected crossing: its boundary flag says so. If rounding
- * decides whether a crossing is here (close), the flag must be 2 (placed linearly), or the trimming margin be 0. */
+/* The vertex lies at no expected crossing. Returns whether trimming made it, which its boundary flag says. If rounding
+ * decides whether there is a crossing (close), the flag must also be 2 (placed linearly), or the trimming margin 0. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;
@@ -299,7 +299,7 @@ static void compare_missing(compare_state* state, int64_t* present, int64_t* abs
 
 /* ---- faces ---- */
 
-/* Returns how many segments or triangle sides lead from one edge to another. more: counts one more first. */
+/* Returns the map's count of segments or triangle sides from one edge to another. more: adds 1 to the count first. */
 static int64_t compare_count(oracle_map* map, int64_t from, int64_t to, int more)
 {
   const int64_t at[3] = { from, to, 0 };
@@ -367,8 +367,8 @@ static void compare_segments(compare_state* state, oracle_map* wanted, oracle_ma
   }
 }
 
-/* Checks each triangle side that no second triangle shares. Trimming must have made both ends; or one end, if the other
- * is on an edge with a cell that is not valid; or the side must be a segment of only one cell. */
+/* Checks each triangle side that no second triangle shares. It must have one of three causes: trimming made both ends;
+ * trimming made one end, and a cell at the other end's edge is not valid; or the side is a segment of only one cell. */
 static void compare_boundary(compare_state* state, oracle_map* wanted)
 {
   const mesh_report* mesh = state->mesh;

@@ -24,8 +24,8 @@ typedef struct compare_state
   oracle_comparison* result;
   /* [point_count]: an edge of the lattice (3 * number + axis), or COMPARE_*. */
   int64_t* vertex_edge;
-  /* [edge_count] of the lattice: the number of a point, or -1. A pinched edge has a second vertex, because the
-   * triangles of its two cells do not meet on it. */
+  /* For each crossed edge of the lattice: the number of the point on it, or -1. A pinched edge has a second point,
+   * because only two opposite cells around it are valid, and their triangles share no point. */
   int64_t *edge_vertex, *second_vertex;
   double* gradient;    /* [point_count][3], by the oracle */
   double* vertex_cube; /* [point_count], length of the vertex's edge */
@@ -50,7 +50,7 @@ void compare_note(compare_state* state, const char* format, ...);
 
 /* ---- oracle_compare_edges.c: the edge of each vertex, edges without a vertex, and sides of triangles ---- */
 
-/* Counts, for each component, the edges that have a vertex and the edges that lack a vertex. */
+/* Counts, for each component of the oracle's surface, the crossed edges that have a vertex and those that lack one. */
 void compare_edges(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */

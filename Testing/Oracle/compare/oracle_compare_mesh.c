@@ -263,7 +263,7 @@ void compare_vertices(compare_state* state)
     if (state->vertex_edge[v] == COMPARE_TRIM_VERTEX)
     {
       compare_trim_vertex(state, v, &sample, residual);
-      /* A linear cut lies beside the surface, so its normal need not be the surface's. */
+      /* A vertex that trimming placed linearly (2) lies beside the surface, so its normal need not be the surface's. */
       on_surface = state->surface->boundary_flag[v] != 2;
     }
     else if (state->vertex_edge[v] >= 0)

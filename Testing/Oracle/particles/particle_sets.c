@@ -225,7 +225,7 @@ static const particle_set_entry particle_sets[] = {
     .blocks = { { { 1.6, 1.2, 0.4 }, { 0.0, 0.0, 0.2 }, 0.06, 1.3, 0.1, 5, in_puddle,
       scalar_wave } },
     .change = add_walls },
-  /* smoothing lengths 1:4 to 1:1024; the surface is where they are small */
+  /* smoothing lengths that differ by a factor from 4 to 1024; the surface is where they are small */
   { "variable_4", -1.0, .finest = 0.0625 },
   { "variable_16", -1.5, .finest = 0.015625 },
   { "variable_128", -1.0, .finest = 0.25 / 128.0 },

@@ -403,8 +403,9 @@ class Options(CommandLineTest):
             self.assertAlmostEqual(found, expected, places=6)
         for name in ("Radius", "WeightSum", "vtkValidPointMask", "Divergence"):
             self.assertIn(f'Name="{name}"', output.read_text())
-        result = self.run_program(self.input, self.directory / "slice.vtk", "--slice=x=-7")
-        self.assertIn("points      262144, 0 of them valid", result.stdout)
+        for quiet, told in ([], "points      262144, 0 of them valid"), (["--quiet"], ""):
+            result = self.run_good(self.input, self.directory / "slice.vtk", "--slice=x=-7", *quiet, says="warning: no point is in the fluid")
+            self.assertTrue(result.stdout.startswith(told), result.stdout)
 
     def test_line(self):
         """--line reports as many points, and as many valid ones, as --probe with a file of the same points. The output

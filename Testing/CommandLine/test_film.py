@@ -261,7 +261,7 @@ class Film(CommandLineTest):
         result = self.make(*paths, "--quiet", env=self.misbehaving(reader="fault", reader_call=2))
         if result.returncode == 0:
             self.skipTest("this VTK has an XML library of its own")
-        self.one_sentence(result, 1, "the reader of VTK failed on .*drop_001.vtp: the program crashed there")
+        self.one_sentence(result, 1, "reading .*drop_001.vtp failed: the program crashed there")
         self.assertEqual([p.name for _, p in self.listed()], ["film_0000.vtp"])
 
     def test_all_fail(self):

@@ -102,6 +102,7 @@ class Project(CommandLineTest):
             self.assertEqual([path.name for _, path in self.listed("film.pvd")], [f"film_000{step}.vti" for step in range(4)])
         result = self.run_program("none.vtp", "none.vtp", "nothing.pvd", *options)
         self.one_sentence(result, 1, "no particle is seen")
+        self.run_good(self.input, self.image, *options, "--quiet", "--box", "5,6,5,6,5,6", says="warning: the image has no value but 0; check --box$")
 
     def test_wrong_usage(self):
         self.output = self.image

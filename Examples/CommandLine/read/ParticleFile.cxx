@@ -303,7 +303,7 @@ void CheckRegularFile(const std::string& file)
 void ReadWithCare(const std::string& file, const std::function<void()>& read)
 {
   Messages() = {};
-  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged", true);
+  const Activity reading("reading " + file + " failed", "the file may be damaged", true);
   try
   {
     read();

@@ -183,21 +183,23 @@ void AddPointRows(const Job& job, double time, vtkDataSet* points,
   }
 }
 
-/// Returns a line of text about the points, or about the image.
-std::string Describe(vtkDataSet* data)
+/// Returns a line of text about the points, or about the image. fault: says so if no fluid is there.
+std::string Describe(vtkDataSet* data, std::string& fault)
 {
   std::ostringstream line;
   if (auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray(MaskName)))
   {
-    line << "points      " << data->GetNumberOfPoints() << ", "
-         << std::count(mask->Begin(), mask->End(), 1) << " of them valid\n";
+    const auto valid = std::count(mask->Begin(), mask->End(), 1);
+    line << "points      " << data->GetNumberOfPoints() << ", " << valid << " of them valid\n";
+    fault = valid > 0 ? "" : "no point is in the fluid; check where the points are";
   }
   else
   {
     vtkDataArray* values = data->GetPointData()->GetScalars();
+    const double* range = values->GetFiniteRange(); // of no values: the first is the larger one
     line << "image       " << DescribeSize(vtkImageData::SafeDownCast(data)) << ", "
-         << Printable(values->GetName()) << " from " << values->GetFiniteRange()[0] << " to "
-         << values->GetFiniteRange()[1] << "\n";
+         << Printable(values->GetName()) << " from " << range[0] << " to " << range[1] << "\n";
+    fault = range[0] < 0.0 || range[1] > 0.0 ? "" : "the image has no value but 0; check --box";
   }
   return line.str();
 }
@@ -325,16 +327,20 @@ bool MakeField(Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
-      for (const std::string& warning : Messages().Warnings)
-      {
-        Say("warning: " + warning);
-      }
       vtkDataSet* result =
         points ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
       HideOutside(job, points, result);
+      std::string fault;
+      const std::string line = Describe(result, fault);
+      std::vector<std::string>& warnings = Messages().Warnings;
+      warnings.resize(std::max<std::size_t>(warnings.size(), fault.empty() ? 0 : 1), fault);
+      for (const std::string& warning : warnings)
+      {
+        Say("warning: " + warning);
+      }
       if (!job.Has("--quiet"))
       {
-        std::cout << Describe(result) << "seconds     " << seconds << "\n";
+        std::cout << line << "seconds     " << seconds << "\n";
       }
       WriteDataSet(job.Output, result);
       ColorScale colors(job.Picture);

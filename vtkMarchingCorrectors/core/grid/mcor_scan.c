@@ -196,7 +196,7 @@ mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int 
   const uint64_t bucket_count = (key_limit >> *shift) + 2;
   MCOR_TRY(mcor_reserve(context, buckets, bucket_count * sizeof(cl_int)));
   const size_t per_item = MCOR_ITEM_BUCKETS_OF(context->cl.lanes);
-  return MCOR_LAUNCH(context, "mcor_bucket_fill", MCOR_LIGHT,
+  return MCOR_LAUNCH(context, "mcor_bucket_fill", MCOR_MEDIUM,
     (bucket_count + per_item - 1) / per_item, MCOR_BUFFER(keys), MCOR_INT(count), MCOR_INT(*shift),
     MCOR_INT((int)bucket_count), MCOR_BUFFER(buckets));
 }

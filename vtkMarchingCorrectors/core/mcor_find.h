@@ -134,8 +134,8 @@ extern "C"
     /* The index of each role's array. For the first four roles, the index is -1 also if the input
      * does not use the array. */
     int which[MCOR_ROLE_COUNT];
-    /* Each role's array, or its one value, as the core reads them, even if the input does not use
-     * them. For MCOR_ROLE_FLUID, only the name is set. */
+    /* The array of each role, or its single value, in the form that the core reads; set even if
+     * `input` does not use it. For MCOR_ROLE_FLUID, only the name is set. */
     mcor_array views[MCOR_ROLE_COUNT];
     double fluid_value;
     int64_t fluid_count; /* number of fluid particles */

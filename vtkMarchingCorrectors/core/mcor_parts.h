@@ -38,8 +38,8 @@ extern "C"
   typedef struct mcor_measure
   {
     int64_t fluid_count, solid_count;
-    /* The range of positions minus and plus scaled support radii; along a periodic axis, the range
-     * that the periodic images in use may reach. */
+    /* The range that the particles' scaled supports cover; along a periodic axis, the range that
+     * the periodic images in use may reach. */
     double low[3], high[3];
     double x_low[3], x_high[3];      /* range of the positions of fluid particles */
     double h_min, h_max;             /* range of the smoothing lengths of fluid particles */

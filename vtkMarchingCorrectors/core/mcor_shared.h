@@ -19,8 +19,8 @@
 typedef struct mcor_level
 {
   MCOR_TYPE(ulong) base; /* key of the level's cell (0, 0, 0) */
-  /* In fixed-point units. period: the period's length; 0: none. side: the lowest place, 0 or more,
-   * at which a period begins. */
+  /* In fixed-point units. period: the period's length; 0: there is none. side: of the places where
+   * a period begins, the lowest that is 0 or more. */
   MCOR_TYPE(long) period[3], side[3];
   MCOR_TYPE(int) cells[3];        /* extent of the level, in its cells */
   MCOR_TYPE(int) period_cells[3]; /* cells of a period */
@@ -86,10 +86,10 @@ typedef struct mcor_level
  * nodes that cells of other levels have on the leaf's sides. */
 #define MCOR_OPEN_SIDES 4
 
-/* How many masks a brick has. EDGE masks mark the brick's lattice edges with a vertex, see
- * mcor_cell.cl. DECISION masks 0 to 2, by axis of the normal, mark ambiguous faces whose lowest
- * node is in the brick and whose nodes above the iso value are joined. Mask 3 marks cells whose
- * samples are all below the iso value; mask 4 marks cells whose samples are all above it. */
+/* How many masks a brick has. EDGE masks mark those lattice edges of the brick that have a vertex,
+ * see mcor_cell.cl. DECISION masks 0 to 2, for normals along x, y, z, mark ambiguous faces whose
+ * lowest node is in the brick and whose nodes above the iso value are joined. Mask 3 marks cells
+ * whose samples are all below the iso value; mask 4 marks cells whose samples are all above it. */
 #define MCOR_EDGE_MASKS 9
 #define MCOR_DECISION_MASKS 5
 
@@ -123,8 +123,8 @@ typedef struct mcor_rung
  * of its level, 3^3 bricks of the next finer level. */
 #define MCOR_LEAF_SLOTS (8 + 27)
 
-/* How many uints hold the used cells around the edges of a brick: one mask, of two uints, for each
- * axis and quadrant. */
+/* How many uints the quadrant masks of a brick have: 2 for each axis and each of the 4 quadrants
+ * around an edge along it. A mask tells at which edges a used cell is in the quadrant. */
 #define MCOR_QUADRANT_WORDS 24
 
 /* Points that one work-item cuts into groups. */
@@ -140,7 +140,7 @@ typedef struct mcor_rung
  * is no further than this from their supports. */
 #define MCOR_POINT_EXTENT (0.5 * MCOR_GROUP_EDGE + 2.5 + 1)
 
-/* Groups of points close to each other that one work-item evaluates together. */
+/* A cluster has at most this many groups of points. One work-item evaluates a cluster. */
 #define MCOR_CLUSTER_OF(lanes) ((lanes) == 1 ? 1 : 16)
 
 /* There is no Shepard mean where the fluid's own weight is less than this. If nodes needed no such

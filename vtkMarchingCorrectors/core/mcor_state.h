@@ -293,7 +293,7 @@ typedef struct mcor_box
   uint8_t* kept;       /* per triangle of the surface: 1: its cell is owned; NULL: all are */
 } mcor_box;
 
-/* The iso value under way. Points that filling adds are evaluated for the value 0. */
+/* The iso value whose surface is made. It is 0 while filling evaluates the points that it adds. */
 typedef struct mcor_iso
 {
   int number; /* index in options.iso_values; iso_count while filling adds points */
@@ -324,7 +324,7 @@ typedef struct mcor_run
   int64_t normals_lacking;     /* number of points without a normal so far */
 } mcor_run;
 
-/* The particles of the last call, and which of its results hold; see mcor_reuse.c. */
+/* What the last call was given, and which of its results are still valid; see mcor_reuse.c. */
 typedef struct mcor_kept
 {
   mcor_input input;

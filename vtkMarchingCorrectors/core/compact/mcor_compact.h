@@ -88,9 +88,9 @@ typedef struct mcor_bunches
   size_t point_room;
   int point_count;
   MCOR_LIST(mcor_start) starts;
-  /* Views of the mesh's buffers, in which loops over vertices read or write. In mcor_add_vertices,
-   * `node` and `offset` are arrays of the appended vertices instead; `offset` (real [][4]) tells
-   * where the correction of each vertex begins. */
+  /* Views of the mesh's buffers, which loops over vertices read or write. But in mcor_add_vertices,
+   * `node` and `offset` are arrays of the appended vertices, and `offset` (real [][4]) tells where
+   * the correction of each vertex begins. */
   void *node, *offset, *linear, *gradient, *ends;
   /* Along each axis, in cubes: the lower and upper side that caps close, then the lower and upper
    * side of the period. Vertices on these sides stay. -1: no such side. */

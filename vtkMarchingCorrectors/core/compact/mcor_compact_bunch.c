@@ -28,11 +28,11 @@
 
 /* ---- Nodes ---- */
 
-/* Gives each vertex the key of its node: the end of its edge that is nearer by linear
- * interpolation; if both are equally near, the lower end. The key contains the last bit of the
- * level: levels of neighbouring cells differ by at most one, so nodes of different levels have
- * different keys. Vertices stay (MCOR_FROZEN) if they lie on a side that caps close, on a side of
- * the period or on the border that the node threshold leaves, or belong to cuts or caps. */
+/* A vertex's node is the end of its edge that is nearer by linear interpolation; if both are
+ * equally near, the lower end. Gives each vertex the key of its node. The key contains the last bit
+ * of the level. As levels of neighbouring cells differ by at most one, nodes of different levels
+ * then have different keys. Vertices stay (MCOR_FROZEN) if they lie on a side that caps close, on a
+ * side of the period or on the border that the node threshold leaves, or belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -83,8 +83,8 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   MCOR_THEN(status,
     mcor_parallel_run(
       context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_key_slice, bunches, NULL));
-  /* Freezes the corners of caps. Marks as held both end vertices of each cut edge: the key of the
-   * cut vertex refers to them, so they may be merged, but do not move alone. */
+  /* Freezes the corners of caps. Marks both end vertices of each cut edge as `held`: they may be
+   * merged, but do not move alone, because the key of the cut vertex refers to them. */
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
@@ -252,9 +252,9 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return seen == fan->count;
 }
 
-/* Whether a closed piece that has the bunch would keep at least MCOR_LEAST_PIECE vertices if all
- * bunches were merged. Counts the bunch, the vertices of the ring around it, and the vertices of
- * all triangles around the ring. Stops when there are enough. */
+/* Let the bunch be part of a closed piece, and let all bunches be merged. Returns whether the piece
+ * then has at least MCOR_LEAST_PIECE vertices. Counts the bunch, the vertices of the ring around
+ * it, and the vertices of all triangles around the ring. Stops when there are enough. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* ring)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);
@@ -327,8 +327,8 @@ static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Sets `leans` for each unsure bunch that can be merged beside the bunches that are merged already.
- * If two unsure bunches are neighbours, only the one with the lower first vertex may be chosen. */
+/* Chooses unsure bunches that can be merged, given the bunches merged so far: sets `leans`. If two
+ * unsure bunches are neighbours, only the one with the lower first vertex may be chosen. */
 static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours: takes apart bunches that turn triangles over, and moves vertices of slivers. */
+/* Compact contours: undoes merges that turn triangles over, and moves vertices of slivers. */
 
 #include "mcor_compact.h"
 #include "mcor_vector.h"
@@ -48,8 +48,8 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Judges each triangle. A merged bunch that did not reach the surface becomes bad. If all reached
- * it, but the triangle is turned over, all merged bunches at the triangle become bad. Sets `wide`
+/* Judges each triangle. Its merged bunches that did not reach the surface become bad. If all of
+ * them reached the surface, but the triangle is turned over, all of them become bad. Sets `wide`
  * for the widest corner of a sliver, if this vertex may move. */
 static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
 {

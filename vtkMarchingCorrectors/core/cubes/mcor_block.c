@@ -13,8 +13,8 @@
 /* Finds the states of the cubes in block_keys, and which cubes are inactive (the surface is neither
  * in them nor beside them). Evaluates `parts` cubes: the first ones, or those made by dividing.
  * `index` has their places, or is empty if the places are 0, 1, 2, .... All other cubes are blocks
- * that were kept from an earlier iso value or call, and whose larger cubes are inactive now. These
- * blocks become void: they count as if they did not exist. */
+ * that were kept from an earlier iso value or call, and that lie in larger cubes that are inactive
+ * now. These blocks become void, i.e. count as if they did not exist. */
 static mcor_status mcor_test_cubes(
   mcor_context* context, int level, const mcor_buffer* index, int parts)
 {
@@ -34,7 +34,7 @@ static mcor_status mcor_test_cubes(
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Most blocks. If a fourth of these had surface, the triangles would reach their own limit. */
+/* The largest number of blocks. If a fourth had surface, there would be too many triangles. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
 /* Replaces the cubes of a level by the parts of the active cubes among them. If the parts are

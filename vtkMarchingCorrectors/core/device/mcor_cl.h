@@ -68,7 +68,8 @@ typedef enum mcor_program
   MCOR_PROGRAM_PROBE,
   MCOR_PROGRAM_COUNT
 } mcor_program;
-/* Sets of programs, as bits: for the lattice, for probes, and for the surfaces of a build. If
+/* Sets of programs, as bits. LATTICE: the programs that depend on the precision alone. PROBE: the
+ * program for probes. FIELD: the programs for surfaces, compiled for each mcor_build. If
  * cl.builds_sets, each set is one program: MCOR_PROGRAM_GRID, _PROBE and _NODES, in this order. */
 #define MCOR_PARTS_LATTICE ((1 << MCOR_PROGRAM_ATTRIBUTES) - 1)
 #define MCOR_PARTS_PROBE (1 << MCOR_PROGRAM_PROBE)

@@ -197,7 +197,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
 mcor_status mcor_finish(mcor_context* context)
 {
   MCOR_CL_COMMAND(context, MCOR_COMMAND_WAIT, "", 0, clFinish(context->cl.queue), "clFinish");
-  /* No copy is under way now. Memory that the host still writes keeps `sent`, for mcor_send. */
+  /* All copies are done. `sent` is still needed where the host writes, see mcor_send. */
   for (mcor_locked* l = context->cl.locked; l < context->cl.locked + MCOR_LOCKED_LIMIT; ++l)
   {
     l->sent = l->of && l->written > 0 ? l->sent : 0;

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device's objects, memory, programs and kernels: what mcor_cl_*.c use of OpenCL. A
- * buffer is memory of the host. A command queue is always empty, and is the same object as its
- * context. */
+/* The built-in device's objects, memory, programs and kernels: the functions of OpenCL that
+ * mcor_cl_*.c call. A buffer is memory of the host. A command queue is always empty, and is the
+ * same object as its context. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"

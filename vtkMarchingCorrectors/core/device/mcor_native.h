@@ -6,7 +6,7 @@
 /* The built-in device: an OpenCL platform inside this library. Its one device is the CPU, for which
  * the kernels were compiled with the library (CompileAhead.cmake). The platform has only the
  * functions of OpenCL that this library calls. Kernels are not timed. If processes share the CPU,
- * each uses a number of threads. Each command is done when its call returns. */
+ * each process has a share of the threads. Each command is done when its call returns. */
 
 #include "mcor_parallel.h"
 

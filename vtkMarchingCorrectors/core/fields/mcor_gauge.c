@@ -55,8 +55,8 @@ typedef struct mcor_gauge_row
 {
   int64_t line, count;
   double first, step, last;
-  /* If steps > 0, the row has the samples of a line that particles may reach, and place i is
-   * (sample + i) / steps. If steps is 0, the row divides a part of a line. */
+  /* If steps > 0, a line has this many steps, the row has the samples that particles may reach, and
+   * place i is (sample + i) / steps. If steps is 0, the row divides a part of a line. */
   int64_t steps, sample;
   const double* weight; /* [count] */
 } mcor_gauge_row;
@@ -280,10 +280,10 @@ static mcor_status mcor_scan_row(
   return MCOR_OK;
 }
 
-/* Divides each of `parts`, which are job->changed or job->suspects, into sections. A part of
- * job->changed is replaced by its sections with a crossing (one: by the first of them). If a part
- * of job->suspects has crossings, its sections with a crossing move to job->changed; else the part
- * is replaced by the sections beside each extremum that may be beyond the level. */
+/* Divides each part of `parts` into sections. If `parts` is job->changed, the sections with a
+ * crossing take the place of the part (one: only the first of them). If `parts` is job->suspects,
+ * sections with a crossing are added to job->changed, and the part is dropped; without crossings,
+ * the two sections beside each extremum that may be beyond the level take its place. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {

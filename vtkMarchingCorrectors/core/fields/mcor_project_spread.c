@@ -60,10 +60,10 @@ static void mcor_read_amounts(
 
 /* ---- particles in the image ---- */
 
-/* Finds which periodic images of a particle count, [first, last] along each axis: the images in the
- * box. If the line of sight is along x, y or z, it is enough along the other two axes that the
- * image's support reaches the box. Moves x into the first period of the box. Returns whether any
- * image counts. */
+/* Finds the periodic images of a particle that count for the image: images [first, last] along each
+ * axis. A periodic image counts if its position is in the box. If the line of sight is along x, y
+ * or z, it is enough along the other two axes that its support reaches the box. Moves x into the
+ * first period of the box. Returns whether any periodic image counts. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {

@@ -12,8 +12,8 @@
 #include <math.h>
 
 /* Search cells per support radius. The paper's cells are as large as the support. Smaller cells fit
- * the round reach of a query better, but a query reads more rows: a run with 2 cells per support
- * took as long as with 1, and with 3 longer. */
+ * the round reach of a query better, but then a query reads more rows. With 2 cells per support, a
+ * run took as long as with 1; with 3, it took longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
 /* The most cells of a level along an axis, so that keys of all levels stay below 2^62. A level that
@@ -102,8 +102,8 @@ static mcor_status mcor_reserve_padded(
   return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
-/* Orders the particles of each cell. Then moves the particles' arrays, one after the other, into
- * the order `order`, so that each array may take the memory of the array before. An array whose
+/* Sorts the particles within each cell. Then puts the particles' arrays into this order, one after
+ * the other, so that each array can take the memory that the array before has freed. An array whose
  * elements are all the same is in order already. */
 static mcor_status mcor_move_particles(mcor_context* context, const mcor_staging* staging)
 {

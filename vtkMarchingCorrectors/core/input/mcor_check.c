@@ -34,8 +34,8 @@ static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals*
   return MCOR_OK;
 }
 
-/* The legal values of an option. With is_word: the number of one of its words, e.g. 0 or 1 for
- * "table|field". Else: `low` to `high`, or -1, -2, ... for the option's words in their order. */
+/* The legal values of an option. If is_word is set: the numbers of the option's words, e.g. 0 and 1
+ * for "table|field". Else: `low` to `high`, and -1, -2, ... for the words. */
 typedef struct mcor_legal
 {
   bool is_word, excludes_low, excludes_high;

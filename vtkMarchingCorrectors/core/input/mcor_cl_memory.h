@@ -7,7 +7,7 @@
 
 #include "mcor.h"
 
-/* An input whose arrays the host can read. All zero: none. */
+/* An input whose arrays the host can read. If all members are zero, there is no input yet. */
 typedef struct mcor_sight
 {
   mcor_input input;

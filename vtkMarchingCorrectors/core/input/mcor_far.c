@@ -25,9 +25,9 @@
 /* Each side of the lattice is at most this many cubes beyond the region and all used particles. */
 #define MCOR_REGION_MARGIN 16
 
-/* mcor_far_slice counts in these sums: particles in use; particles that become absent; fluid
- * particles that stay. Its findings also have, as `first`, the first particle that becomes absent
- * and, as most[0], the greatest reach, slack included, of the particles in use that stay. */
+/* The sums in the findings of mcor_far_slice: the numbers of particles in use, of particles that
+ * become absent, and of fluid particles that stay. `first` is the first particle that becomes
+ * absent. most[0] is the greatest sum of reach and slack of the particles in use that stay. */
 enum
 {
   MCOR_USED,

@@ -48,9 +48,9 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
   return spread;
 }
 
-/* Fails. If all fluid lies in a plane, the message names the plane of the solids or, if the solids
- * do not lie in one plane, the first solid off the fluid's plane. But returns MCOR_OK if a position
- * of the fluid is not finite. */
+/* Fails because not all particles lie in one plane. If all fluid lies in a plane, the message names
+ * the plane of the solids or, if the solids do not lie in one plane, the first solid off the
+ * fluid's plane. Does not fail if a position of the fluid is not finite. */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {

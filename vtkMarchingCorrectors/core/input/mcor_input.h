@@ -177,8 +177,8 @@ void mcor_cut_bounds(mcor_context* context, const double low[3], const double hi
  * from the median, appends to the error sentence which particle has this length. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
-/* Returns the first particle with a component that is not finite or, if `positive`, not above 0;
- * -1: none. skip: which of the particles that `solid` marks are not checked. */
+/* Returns the first particle with a number in `array` that is not finite or, if `positive` is set,
+ * not above 0; -1: there is none. skip: which particles marked in `solid` are not checked. */
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive);
 

@@ -86,9 +86,9 @@ static mcor_status mcor_make_bins(mcor_context* context, mcor_bin_job* job)
   return mcor_reduce_doubles(context, MCOR_LEAST, job->minus[0], MCOR_BINS);
 }
 
-/* Narrows the bins' range, again and again, to the bin that holds value `number` in ascending order
- * (from 0), until this bin has fewer than `many` values, but at most `passes` times. A bin's range
- * ends at its least and its greatest value, so that a huge outlier does not move the median. */
+/* Narrows the bins' range to the bin that holds value `number` in ascending order (from 0). Repeats
+ * this until the bin has fewer than `many` values, at most `passes` times. A bin's range ends at
+ * its least and its greatest value, so that a huge outlier does not move the median. */
 static mcor_status mcor_narrow_bins(
   mcor_context* context, mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {

@@ -118,9 +118,9 @@ static void mcor_add_place(mcor_sample_list* samples, const mcor_sample* place)
   }
 }
 
-/* Measures the bounds of all ranks' particles along x, y, z. Cuts them at MCOR_MOST_WIDTHS times
- * a width beyond the middle half of sampled particles. The width is the half's longest side. Also
- * sets job->extent. */
+/* Measures the bounds of all ranks' particles along x, y, z. The bounds end at most
+ * MCOR_MOST_WIDTHS widths beyond the middle half of the sampled particles. A width is the greatest
+ * length of the middle half along an axis. Also sets job->extent. */
 static mcor_status mcor_measure_extent(
   mcor_context* context, mcor_neighbour_job* job, mcor_findings* bounds)
 {
@@ -288,8 +288,8 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* The search for smoothing lengths goes in steps: four from one power of 2 to the next. Returns the
- * step that comes `further` steps after the greatest step that is not above h. */
+/* The search for smoothing lengths begins with lengths of 4, 5, 6 or 7 times a power of 2. Returns
+ * the length that comes `further` places after the greatest one not above h. */
 static double mcor_length_step(double h, int further)
 {
   int exponent;
@@ -299,8 +299,8 @@ static double mcor_length_step(double h, int further)
 }
 
 /* Returns the smoothing length h of sorted particle i, for which sum_j W h^d is job->eta. First
- * finds two successive steps with h between them, then uses false position with some bisection.
- * Neither the steps nor the result depend on the first guess. */
+ * finds two successive lengths of mcor_length_step with h between them, then uses false position
+ * with some bisection. Neither these lengths nor the result depend on the first guess. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
@@ -379,7 +379,7 @@ static void mcor_sum_slice(void* data, int slice, int64_t first, int64_t last)
   free(list.near.of);
 }
 
-/* Makes the tree of the present particles, with positions within the period. */
+/* Makes the tree of all particles but absent ones and ignored solids, wrapped into the period. */
 static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_job* job)
 {
   const mcor_input* input = job->input;

@@ -273,8 +273,8 @@ static double mcor_weight_limit(const mcor_context* context)
 }
 
 /* Stages a chunk from element *to on, and advances *to. If a weight in the chunk is too large, or a
- * particle is beyond the measured bounds, stages neither this chunk nor any later chunk. Particles
- * are beyond the bounds, on which all later steps rely, if the caller's arrays have changed. */
+ * particle is beyond the measured bounds, stages neither this chunk nor any later chunk. A particle
+ * is beyond the bounds, on which all later steps rely, only if the caller's arrays have changed. */
 static void mcor_stage_chunk_at(
   const mcor_staging* staging, mcor_stage_slice* slice, mcor_stage_chunk* chunk, int64_t* to)
 {

@@ -31,7 +31,7 @@ static inline bool mcor_is_plane(const mcor_context* context)
  * options to *flat. */
 mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Turns the copies *flat into the plane. */
+/* Turns the copies of input and options, in *flat, into the plane z = 0. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
 /* Turns positions into the plane. *turned becomes an array of the values *flat, which the caller
@@ -66,8 +66,8 @@ void mcor_unflatten_doubles(
 /* Keeps only the cells that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
-/* Makes normals from lines if the gradient gives none. Lines in the cells just outside of the box
- * must exist, too. */
+/* Where the gradient gives no normal, makes a normal at right angles to the lines at the point. The
+ * lines in the ring of cells around the box must not be removed yet. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
 /* Makes the surface's polylines from the triangles that stand for lines, and turns the surface back
  * to the caller's axes. */

@@ -38,8 +38,8 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* Measures slices of the triangles: finds the largest terms, which decide the units of exact sums.
- * If `sums` is set, takes these terms from `all`, and adds terms and hashes of edges exactly. */
+/* A measurement of triangles in slices. It finds the largest terms, which decide the units of exact
+ * sums. If `sums` is set, it takes them from `all`, and adds terms and edge hashes exactly. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;

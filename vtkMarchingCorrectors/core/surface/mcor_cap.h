@@ -121,8 +121,8 @@ typedef struct mcor_cap_nodes
   double* value; /* [node_count], the field at nodes, if filled regions want it; else NULL */
 } mcor_cap_nodes;
 
-/* Returns a node's bit in the masks of its brick. The node has coordinate `along` on the side's
- * axis, and is in line with node number `at` of the side. */
+/* Returns a node's bit in the masks of its brick. The node has coordinate `along` on the axis of
+ * the side's normal. Its other two coordinates are those of the side's node number `at`. */
 static inline int mcor_side_bit(const mcor_cap_nodes* nodes, int along, int64_t at)
 {
   return (along & 3) << 2 * nodes->axis | (int)(at & 3) << 2 * nodes->across[0] |
@@ -146,9 +146,9 @@ static inline int64_t mcor_corner_index(const mcor_cap_nodes* nodes, int64_t at,
   return (int64_t)brick * MCOR_SIDE_NODES + (u & 3) + MCOR_BRICK * (v & 3);
 }
 
-/* mcor_cap_points.c. Returns the coordinate, in nodes, of the lower or upper side along an axis
- * that a cap closes; -1: none. With MCOR_CAP_BOX this is the side of the box (with ranks: of the
- * whole box), else the side of the period. */
+/* mcor_cap_points.c. Returns at which coordinate along an axis, in nodes, a cap closes the lower or
+ * (if `upper` is 1) the upper side; -1: there is no such cap. With MCOR_CAP_BOX this is the side of
+ * the box (with ranks: of the whole box), else the side of the period. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether a cap closes this side of this call's box. */
@@ -239,9 +239,9 @@ typedef mcor_status (*mcor_add_clipped)(void* data, const mcor_cap_corner* corne
 #define MCOR_POLYGON_MOST 12
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);
-/* Finds the cut vertex with this key. If there is none, makes the vertex where a linear trim margin
- * would be 0 between two corners; in a plane, mcor_place_cap_cuts moves the vertex later.
- * cut->vertex: the vertex's index. */
+/* Finds the cut vertex with this key. If there is none, makes the vertex between two corners, where
+ * the trim margin would be 0 if it were linear. In a plane, mcor_place_cap_cuts moves the vertex
+ * later. cut->vertex: the vertex's index. */
 mcor_status mcor_find_cap_cut(mcor_cap_job* job, uint64_t key, const mcor_cap_corner* low,
   const mcor_cap_corner* high, mcor_cap_vertex vertex, mcor_cap_corner* cut);
 /* Moves the cuts in a plane to where the trim margin is 0. */

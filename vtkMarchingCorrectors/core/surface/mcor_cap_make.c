@@ -51,8 +51,8 @@ static mcor_status mcor_find_cap_vertex(mcor_cap_job* job, mcor_table* map, uint
   return MCOR_OK;
 }
 
-/* Returns the place on a line where a cut is tried next: where a linear margin between the
- * bracket's ends would be 0; or, if `halves` is set, the middle between these ends. */
+/* Returns the place on a line where a cut is tried next. If `halves` is set, it is the middle of
+ * the bracket. Else it is where the margin would be 0 if it were linear in the bracket. */
 static double mcor_cut_place(const mcor_cap_line* line, bool halves)
 {
   const double* margin = line->margin;

@@ -41,9 +41,9 @@ void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
 
 /* ---- Bricks ---- */
 
-/* Fails if there are too many clusters (4^3 bricks) at a side. A cluster has 16^2 nodes on the
- * side, so the limit is 4 to 64 million nodes. If few particles reach more nodes, a smoothing
- * length or the cube size is wrong. */
+/* Fails if there are too many clusters (4^3 bricks) at a side. The more particles there are, the
+ * higher is the limit; it corresponds to 4 to 64 million nodes on the side. If few particles reach
+ * more nodes, a smoothing length or the cube size is wrong. */
 static mcor_status mcor_limit_side(
   mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)
 {

@@ -131,8 +131,8 @@ extern "C"
   typedef struct mcor_found
   {
     mcor_input input; /* valid until mcor_free_found */
-    /* The index of each role's array. For the first four roles, the index is -1 also if the input
-     * does not use the array. */
+    /* The index of the array for each role; -1 if there is none or, for the first four roles, if
+     * the input does not use the array. */
     int which[MCOR_ROLE_COUNT];
     /* The array of each role, or its single value, in the form that the core reads; set even if
      * `input` does not use it. For MCOR_ROLE_FLUID, only the name is set. */

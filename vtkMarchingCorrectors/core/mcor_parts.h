@@ -149,8 +149,8 @@ extern "C"
     int64_t open;                  /* 2: reduce by the sum, which may wrap around; 0: closed */
   } mcor_measures;
 
-  /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call
-   * mcor_measure_sums for each part, reduce the members marked 2, and call mcor_keep_measures.
+  /* Call mcor_measure_terms for each part, reduce the measures marked 1 over all parts, call
+   * mcor_measure_sums for each part, reduce the measures marked 2, and call mcor_keep_measures.
    * numbers: [point_count], the points' numbers in the whole surface; NULL: their indices. */
   void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures);
   void mcor_measure_sums(

@@ -151,7 +151,7 @@ typedef struct mcor_rung
 #define MCOR_LEAST_NODE_WEIGHT 1e-3
 #define MCOR_LEAST_VERTEX_WEIGHT(has_lobes) ((has_lobes) ? 0.05 : 1e-3)
 
-/* Components of attributes that are evaluated together. */
+/* At most this many components of attributes are evaluated together. */
 #define MCOR_ATTRIBUTE_LIMIT 12
 
 #endif

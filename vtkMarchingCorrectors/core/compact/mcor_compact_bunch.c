@@ -100,8 +100,8 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
-/* Returns the lowest vertex that v is joined to so far. `first` of a vertex leads to a lower joined
- * vertex, and `first` of the lowest one to itself. */
+/* Returns the lowest vertex that v is joined to so far. `first` of a vertex is a lower vertex that
+ * it is joined to; `first` of the lowest vertex is this vertex itself. */
 static int32_t mcor_first_of(const mcor_bunch_vertex* of, int32_t v)
 {
   for (int32_t first; (first = of[v].first) != v; v = first)

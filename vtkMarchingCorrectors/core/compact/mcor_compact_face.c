@@ -6,8 +6,8 @@
 #include "mcor_compact.h"
 #include "mcor_vector.h"
 
-/* Badness of a triangle, or line, that is turned over: its normal and the sum of its corners' unit
- * gradients point to the same side, or are at a right angle. */
+/* The badness of a triangle or line that is turned over. It is turned over if the angle between its
+ * normal and the sum of its corners' unit gradients is at most 90 degrees. */
 #define MCOR_TURNED 8.0
 /* A triangle of larger badness is a sliver (least angle below 20 degrees), or is turned over. */
 #define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
@@ -87,8 +87,8 @@ static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Takes a bunch apart, and also the bunches beside it that lean on it (`leans`): these are merged
- * only as long as this bunch is. */
+/* Takes a bunch apart. Also takes apart the bunches beside it that lean on it (`leans`), because
+ * they stay merged only as long as it does. */
 static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
 {
   const mcor_bunch_vertex* of = bunches->of;

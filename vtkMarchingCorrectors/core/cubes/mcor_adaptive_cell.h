@@ -62,7 +62,7 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_step(int axis)
   return axis == 0 ? 1 : axis == 1 ? 3 : 9;
 }
 
-/* Returns the slot between two nodes that are half an edge or an edge apart. */
+/* Returns the slot (half of an edge) between two nodes, which are half an edge or an edge apart. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
 {
   const int lower = a < b ? a : b, step = a + b - 2 * lower;

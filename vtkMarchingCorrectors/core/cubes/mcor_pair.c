@@ -40,7 +40,8 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
 }
 
 /* Gives slots (places for node values) to the bricks with nodes of reached cells, and evaluates
- * them. *placed: whether some bricks are new, or this is the first call; else nothing is done. */
+ * them. *placed: false if there was nothing to do: no brick is new, and it is not the first
+ * call. */
 static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -106,8 +106,9 @@ static mcor_status mcor_test_seeds(mcor_context* context)
         MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid));
 }
 
-/* For uniform cubes: evaluates uncertain bricks, and neighbours that are certainly on different
- * sides. Then, round by round, evaluates each brick that touches a node on the other side. */
+/* For uniform cubes. Evaluates uncertain bricks, and any two neighbouring bricks of which one is
+ * certainly above the iso value and one certainly below it. Then, round by round, evaluates each
+ * brick that is certainly on one side and touches a node on the other side. */
 static mcor_status mcor_complete_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

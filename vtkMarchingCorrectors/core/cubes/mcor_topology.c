@@ -5,9 +5,9 @@
 
 #include "mcor_adaptive.h"
 
-/* Makes room for the samples that sample_base counts, and places them by the kernel `locate`. Then
- * evaluates them level by level: bricks' slots, and therefore samples, are sorted by
- * level. *sample_count becomes the number of all samples. */
+/* sample_base holds how many samples each brick has. Makes room for the samples, and places them by
+ * the kernel `locate`. Then evaluates them level by level: bricks' slots, and therefore samples,
+ * are sorted by level. *sample_count becomes the number of all samples. */
 static mcor_status mcor_evaluate_samples(
   mcor_context* context, const char* locate, int* sample_count)
 {

@@ -12,7 +12,7 @@
 
 #define MCOR_KEPT_BUFFERS 32 /* most buffers kept for reuse */
 #define MCOR_LOCKED_LIMIT 32 /* most mcor_locked */
-/* Most segments into which scans and sorts cut their arrays. */
+/* Scans and sorts cut their arrays into at most this many segments. */
 #define MCOR_SEGMENT_LIMIT 4096
 
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */

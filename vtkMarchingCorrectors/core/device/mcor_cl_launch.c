@@ -36,7 +36,7 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   return MCOR_OK;
 }
 
-/* A first launch takes less than this, besides the kernel's own time, if no driver compiles. */
+/* Unless a driver compiles, a first launch takes less than this, besides the kernel's own time. */
 #define MCOR_COMPILE_SECONDS 0.01
 
 /* Launches a kernel for the first time, alone, since drivers may compile it only now. The time of
@@ -72,10 +72,10 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
  * seconds, and a user may want to cancel the run. A single work-item is never cut. */
 #define MCOR_PART_SECONDS 0.04
 #define MCOR_FIRST_PART 65536 /* work-items, on a GPU */
-/* MCOR_PART_TERMS: the most terms of sums in a part, for each compute unit of a CPU, in single
- * precision. MCOR_DOUBLE_TERMS: the same in double precision, in which a term takes longer.
- * Parts have no more terms even if they are done quickly, because the next work-items may have far
- * more to do. */
+/* MCOR_PART_TERMS: in single precision, a part has at most this many terms of sums for each compute
+ * unit of a CPU. MCOR_DOUBLE_TERMS: the same in double precision, in which a term takes longer.
+ * These limits hold even if parts are done quickly, because the next work-items may have far more
+ * to do. */
 #define MCOR_PART_TERMS (1 << 21)
 /* While a kernel's time is unknown, its first part on a CPU has the largest allowed number of
  * work-items, divided by this number. */

@@ -95,7 +95,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
 }
 
 /* Returns how many evaluation points a work-item treats at once, the programs' MCOR_LANES. In
- * tests, MCOR_LANES of the environment may set this number. */
+ * tests, the environment variable MCOR_LANES may set this number. */
 static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
   const char* forced = mcor_test_setting("MCOR_LANES");

@@ -23,9 +23,9 @@
  * only some nanoseconds. Light work-items come in groups of 64, medium and heavy ones in groups of
  * one. A medium or heavy launch wakes threads even for few work-items. */
 #define MCOR_FEW_LIGHT_ITEMS 8192
-/* How many parts each thread gets of a light launch, and of a medium or heavy one. There are many
- * parts, because work-items take different times, heavy ones above all, and threads without work
- * wait for the last part. MCOR_PART_ITEMS: the most work-items of a part. */
+/* How many parts each thread gets: MCOR_LIGHT_PARTS of a light launch, MCOR_HEAVY_PARTS of another
+ * one. Parts are many, because threads without work wait for the last part, and work-items take
+ * different times, heavy ones above all. A part has at most MCOR_PART_ITEMS work-items. */
 #define MCOR_LIGHT_PARTS 16
 #define MCOR_HEAVY_PARTS 64
 #define MCOR_PART_ITEMS 4096
@@ -154,7 +154,7 @@ static cl_int mcor_device_info(
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
-/* Makes an object that is zero, except for its table; NULL: memory ran out. Sets *error. */
+/* Makes an object with its table of functions; all else is 0. Sets *error. NULL: memory ran out. */
 static void* mcor_make_object(size_t size, cl_int* error)
 {
   struct _cl_platform_id* object = calloc(1, size);

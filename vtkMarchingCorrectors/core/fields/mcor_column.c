@@ -146,9 +146,10 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
   (void)slice;
 }
 
-/* Along an axis, the density is evaluated at the nodes, then at the quadrature points of each cell.
- * Returns the coordinate of evaluation i, in h. *length: how fast the coordinate grows there, per
- * cell. Cells of radial kernels are shorter near the centre, where the density may have a cusp. */
+/* Returns the coordinate, in h, of evaluation i along an axis. The density is evaluated at the
+ * nodes, then at the quadrature points of each cell. *length: how fast the coordinate grows there,
+ * per cell. Cells of radial kernels are shorter near the centre, where the density may have a
+ * cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Weight sums for gauges and fluxes. The probe evaluates them. */
+/* Finds weight sums for gauges and fluxes, by the functions of mcor_probe.c. */
 
 #include "mcor_level.h"
 #include "mcor_box.h"

@@ -48,9 +48,9 @@ void mcor_free_arrays(double** arrays, int count);
 /* Ends a call that makes no surface. */
 mcor_status mcor_finish_field(mcor_context* context);
 
-/* mcor_widen.c. Makes *volume, [count], from the weights in the search grid: the computed volumes,
- * in unit L^3 or, in two dimensions, L^2. Particles that are not on the device or not in the box
- * get 1. The caller frees *volume, even after a failure. */
+/* mcor_widen.c. Makes *volume: the computed volumes [count], in unit L^3 or, in two dimensions,
+ * L^2. They come from the weights in the search grid. Particles that are not on the device or not
+ * in the box get 1. The caller frees *volume, even after a failure. */
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double** volume);
 
 #endif

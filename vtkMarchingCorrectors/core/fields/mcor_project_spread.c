@@ -18,12 +18,12 @@
 #define MCOR_SPREAD_TOGETHER (1 << 18)
 #define MCOR_SPREAD_GRAIN 2048
 #define MCOR_BAND_ROWS 8
-/* Numbers that a reduction over ranks takes at a time. */
+/* A reduction over ranks takes this many numbers at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
-/* Reads mcor_splat.amount of particles, not yet divided by an area: V A or, for a mean, V B A and V
- * B. If the image shows the density, and masses are given, V A is the mass. If the array of the
- * weight B is the array of masses, V B is the mass. */
+/* Reads mcor_splat.amount of particles, not yet divided by a pixel's area: V A or, for a mean, V B
+ * A and V B; see mcor_splat for V, A and B. If the image shows the density, and masses are given, V
+ * A is the mass. If the array of the weight B is the array of masses, V B is the mass. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {
@@ -239,7 +239,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Returns an mcor_project_job.unit: 3/2 of a power of 2 that is at least four times `number`. */
+/* Returns a unit of mcor_project_job: 3/2 p, with a power of 2 p above four times `number`. */
 static double mcor_rounding_unit(double number)
 {
   int exponent;

@@ -207,8 +207,8 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
  * within 0.7 %, for all kernels and smoothing lengths. */
 #define MCOR_ONE_SIDED (5.0 / 3)
 
-/* Computes each particle's volume V_j = m_j / (sum_k m_k W(x_j - x_k, h_j) (1 + 5/3 D^2)). h_j is
- * not scaled by h_scale; for D see mcor_density_factor; m is 1 where no mass is known. */
+/* Computes the volume of each particle j, m_j / ((1 + 5/3 D^2) sum_k m_k W(x_j - x_k, h_j)). m: the
+ * masses, or 1 if they are unknown. h_j: not scaled by h_scale. D: see mcor_density_factor. */
 static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;

@@ -75,7 +75,7 @@ MCOR_OF_Q mcor_ddw_cubic(realv q)
   return MCOR_FMA((real)-6, fmax((real)1 - q, (realv)0), (real)1.5 * fmax((real)2 - q, (realv)0));
 }
 
-/* 3/16 q^2 - 3/4 q + 3/4 = 3/16 (2 - q)^2; the 3/16 is in the norm. */
+/* w = 3/16 q^2 - 3/4 q + 3/4 = 3/16 (2 - q)^2. The norm contains the factor 3/16. */
 MCOR_OF_Q mcor_w_quadratic(realv q)
 {
   const realv a = fmax((real)2 - q, (realv)0);

@@ -35,7 +35,7 @@ typedef struct mcor_kind
 /* Room for one value more than allowed: a full list tells that there are too many values. */
 #define MCOR_KINDS (MCOR_PARTICLE_TYPES + 1)
 
-/* NaN is above all numbers. */
+/* Whether a is below b. NaN counts as above all numbers. */
 static bool mcor_is_below(double a, double b)
 {
   return a < b || (isnan(b) && !isnan(a));

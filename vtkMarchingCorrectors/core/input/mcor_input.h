@@ -84,7 +84,7 @@ bool mcor_is_all_within(const double* x, int count, double least, double most);
 /* mcor_check.c. Fails and says that two sides of a box are not an interval. */
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to);
 
-/* The most particles. Kernels count in int, also a little beyond the last particle. */
+/* The largest number of particles. Kernels count in int, and a little beyond the last particle. */
 #define MCOR_PARTICLE_LIMIT 2000000000
 
 static inline const char* mcor_array_name(const mcor_array* array, const char* role)
@@ -110,8 +110,8 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
  * becomes infinite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
-/* What a loop, or a slice of it, finds: ranges (an empty one is DBL_MAX, -DBL_MAX), sums of whole
- * numbers, and the least index of the elements that are looked for. */
+/* What a loop, or a slice of it, has found. An empty range is DBL_MAX, -DBL_MAX. Sums are of whole
+ * numbers. first: the least index of the elements that are looked for. */
 #define MCOR_RANGES 14
 #define MCOR_SUMS 4
 typedef struct mcor_findings

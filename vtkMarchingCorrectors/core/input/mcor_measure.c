@@ -134,7 +134,7 @@ static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int 
 
 /* ---- All particles ---- */
 
-/* Indices of the findings over all particles: first of ranges, then of sums. */
+/* Indices in the mcor_findings of all particles: first the indices of ranges, then of sums. */
 enum
 {
   MCOR_REACHES = 0, /* positions minus and plus support radii: x, y, z */

@@ -305,7 +305,7 @@ static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_n
 {
   const double* x = job->sorted[i].x;
   const double least = MCOR_LENGTH_ERROR * job->extent;
-  /* The first guess is the distance to the nearer one of the particles four places before and four
+  /* The first guess is the smaller of the distances to the particles four places before and four
    * places behind this one along the curve. The guess may be too long, because the curve jumps. */
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)

@@ -48,7 +48,7 @@ typedef struct mcor_stage_chunk
   int32_t source[MCOR_CHUNK];
 } mcor_stage_chunk;
 
-/* Reads positions, lengths of kernels, and levels of cubes of a chunk whose count is set. */
+/* Reads positions, kernel lengths and cube levels of a chunk of particles, whose count is set. */
 MCOR_VECTOR_LOOPS static void mcor_read_stage_places(
   const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk)
 {

@@ -103,7 +103,7 @@ static mcor_message mcor_warn_neighbours(const mcor_suspicion* s)
     why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
-/* A warning comes if nearest particles are fewer than this many steps of single precision apart. */
+/* A warning comes if nearest particles are closer than this many steps of single precision. */
 #define MCOR_COARSE_STEPS 8
 
 /* Returns the step between neighbouring numbers of single precision at `largest`. */
@@ -374,8 +374,8 @@ mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input
   return mcor_is_explained(warning, &suspicion) ? MCOR_NO_MESSAGE : checks[warning](&suspicion);
 }
 
-/* A warning comes if neighbouring coordinates in single precision differ by more than this share of
- * the cube size. The share is small, because some triangles are far smaller than cubes. */
+/* A warning comes if the step of single precision at the largest coordinate is more than this share
+ * of the cube size. The share is small, because some triangles are far smaller than cubes. */
 #define MCOR_MOST_STEP 0.01
 
 mcor_message mcor_describe_single_points(double largest, double cube_size)

@@ -56,7 +56,7 @@ void mcor_move_period(mcor_options* options)
 }
 
 /* The field is evaluated up to this distance, in cubes, from the outermost nodes of the ring of
- * cells around the owned cells: trimming may move a vertex by 3/4 of a cube. */
+ * cells around the owned cells, because trimming may move a vertex by 3/4 of a cube. */
 #define MCOR_BOX_MARGIN 1.25
 
 /* A box does not need a particle whose support misses the box by more than this, in cubes. */

@@ -73,7 +73,7 @@ int mcor_list_images(
 /* The usual box.ring: the number of cells around the owned cells that are examined, too. */
 #define MCOR_BOX_RING 1
 int mcor_ring_of(const mcor_options* options); /* box.ring, if there is a box */
-/* Returns a distance in cells of a particle's level: the particle is needed if its support ends at
+/* Returns a distance, in cells of a particle's level. A particle is needed if its support ends at
  * most this far from the box. */
 double mcor_box_slack(const mcor_options* options);
 /* Returns the width of the ring with adaptive cubes, in cells of each level. A wide ring counts

@@ -32,7 +32,7 @@ typedef struct mcor_fill_line
   int32_t* number;         /* [vertex_count + cut_count]: number of the surface's point; -1: none */
 } mcor_fill_line;
 
-/* corner: a node's index; or node_count + a cut's index; or -1 - the index of a surface point. */
+/* corner: a node's index, or (node_count + a cut's index), or (-1 - a surface point's index). */
 typedef struct mcor_fill_triangle
 {
   int32_t corner[3];
@@ -294,9 +294,9 @@ static uint64_t mcor_fill_node_key(const cl_int node[3])
   return (uint64_t)(v >> 2) << 24 | (uint64_t)(u >> 2) << 4 | (uint64_t)((v & 3) << 2 | (u & 3));
 }
 
-/* Finds the point where trimming cuts the side of a polygon between two corners. If the side is a
- * line, trimming has made the point before. If the side is on the border, the point is made, unless
- * a neighbouring square has made it before. */
+/* Finds the point where trimming cuts a side of a polygon. If the side is a part of a line, the
+ * point exists, because trimming has cut the line there. If the side is on the square's border,
+ * makes the point, unless a neighbouring square has made it before. */
 static mcor_status mcor_cut_fill_side(
   void* data, const mcor_cap_corner* from, const mcor_cap_corner* to, mcor_cap_corner* cut)
 {

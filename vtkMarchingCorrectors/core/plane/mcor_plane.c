@@ -135,8 +135,8 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Across the plane, the bounds become the plane's coordinate (0 in the plane's own axes) minus and
- * plus the largest support. */
+/* Exchanges the axes of all bounds. Along the plane's normal, the bounds become the coordinate of
+ * the plane, minus and plus the largest support. The plane's coordinate is 0 in its own axes. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;

@@ -128,8 +128,9 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* Coordinates may be large, so the first point is the origin of the tetrahedra whose volumes are
- * added. Lines are measured in mcor_plane.c. */
+/* The volume is the sum of the tetrahedra from one point to all triangles. It is the surface's
+ * first point, because the coordinates' origin may be far away. Lines are measured in
+ * mcor_plane.c. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
   mcor_measures measures = { .triangle_count = surface->triangle_count };
@@ -152,10 +153,10 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 /* Triangles between two progress reports. */
 #define MCOR_NORMAL_STEP (1 << 18)
 
-/* Makes normals from triangles: at all points in a preview, or if the caller wants this; else only
- * where the gradient vanishes. A triangle adds the cross product of two of its edges, so it counts
- * by its area. Runs on one thread: the order in which a point's triangles are added must not
- * change. */
+/* Makes normals from triangles. In a preview, or with triangle_normals, makes the normals of all
+ * points, else only of points where the gradient vanishes. A triangle adds the cross product of two
+ * of its edges, so it counts by its area. Runs on one thread: the order in which a point's
+ * triangles are added must not change. */
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;

@@ -206,8 +206,8 @@ typedef struct mcor_cap_triangle
 typedef struct mcor_cap_job
 {
   mcor_context* context;
-  /* The surface's vertices by their lattice edge (lower node and axis); for a pinched edge, which
-   * has two vertices, the first one. */
+  /* For each axis, the indices of the surface's vertices, by the lower node of their lattice edge.
+   * A pinched edge has two vertices; its entry is the first one. */
   mcor_table edges[3];
   mcor_table nodes, cuts; /* indices of vertices */
   MCOR_LIST(mcor_cap_vertex) vertices;

@@ -179,8 +179,9 @@ static mcor_status mcor_add_cap_fan(void* data, const mcor_cap_corner* corners, 
   const mcor_cap_nodes* side = job->side;
   if (job->context->space.flat)
   {
-    /* In two dimensions the cap is a line along the side, with the inside on its left: a triangle
-     * whose last two corners are one vertex. Corners that differ only in z are one vertex, too. */
+    /* In two dimensions, a cap is a line along the side, with the inside on its left. The line is
+     * stored as a triangle whose last two corners are one vertex. Corners that differ only in z are
+     * one vertex, too. */
     int other = 1;
     while (other < count - 1 && corners[other].vertex == corners[0].vertex)
     {
@@ -275,8 +276,8 @@ static mcor_status mcor_add_cap_square(
   return MCOR_OK;
 }
 
-/* Caps one square. Its number, greater than the key of any owned cell, is the key of its triangles.
- * Squares come in the order of their numbers. */
+/* Caps one square. The square's number is the key of its triangles, and is greater than the key of
+ * any owned cell. Squares come in the order of their numbers. */
 static mcor_status mcor_visit_cap_square(
   void* data, const mcor_cap_nodes* side, int64_t lowest, const cl_int node[3])
 {

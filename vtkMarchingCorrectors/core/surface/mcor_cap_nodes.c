@@ -72,9 +72,9 @@ static mcor_status mcor_add_cap_brick(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two positions, in nodes, unless they are marked in `clusters`, and marks
- * them. clusters: masks of bricks, by the key of each cluster's first brick. ends: the first and
- * last brick of the last call, because successive particles often reach the same bricks. */
+/* Adds the bricks from position `low` to `high`, in nodes, unless `clusters` marks them, and marks
+ * them there. clusters: masks of bricks, by the key of each cluster's first brick. ends: the first
+ * and last brick of the last call; if they are the same now, nothing is added. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes,
   const double low[3], const double high[3], mcor_table* clusters, int ends[2][3])
 {
@@ -248,7 +248,7 @@ mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Stores the field at node number points->to[i] of a side, or at the node one further in. */
+/* Stores the field at point i, which is node points->to[i] of a side or the node one further in. */
 static void mcor_take_cap_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {

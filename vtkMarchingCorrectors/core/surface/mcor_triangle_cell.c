@@ -104,7 +104,7 @@ void mcor_keep_cell(
   }
 }
 
-/* Moves element i, of `width` bytes, to index number[i] <= i; -1: drops the element. */
+/* Moves each element i of an array to index number[i] <= i. Drops elements whose number is -1. */
 static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t count)
 {
   char* bytes = array;

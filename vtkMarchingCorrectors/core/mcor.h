@@ -130,8 +130,9 @@ extern "C"
     MCOR_PAIRS = 1
   } mcor_seed_mode;
 
-  /* How nodes are connected on an ambiguous face (two above the iso value and two below,
-   * diagonally) and inside a cell. Both ways give the same vertices, and a manifold. */
+  /* How nodes are connected inside a cell, and on an ambiguous face, where two nodes at opposite
+   * corners are above the iso value and two are below. Both ways give the same vertices, and a
+   * manifold. */
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above the iso value are kept apart on such faces, and no cell
@@ -578,10 +579,10 @@ extern "C"
     double* iso_value;         /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
-    /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: a
-     * sphere of radius R has 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In two
-     * dimensions the mean curvature is the line's curvature, 1 / R for a circle. On caps both are
-     * meaningless. */
+    /* [point_count], unit 1 / L and 1 / L^2, from the first and second derivatives of the field. On
+     * a sphere of radius R, they are 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In
+     * two dimensions the mean curvature is the line's curvature, 1 / R for a circle. On caps both
+     * are meaningless. */
     double *mean_curvature, *gauss_curvature;
     double** attributes;       /* [attribute_count] -> [point_count][components] */
     /* [attribute_count]; the index of the first fluid particle at which the attribute is NaN or
@@ -787,9 +788,9 @@ extern "C"
 
   /* Returns the text of the warning, with figures. Returns no message if there is nothing to warn
    * of, if another warning already tells the cause, or with options.globals, because the input then
-   * has only some of the particles. Pass the input, options and surface of mcor_extract. You may
-   * also ask for the last three warnings after other calls: of the surface, they need only
-   * `statistics`. */
+   * has only some of the particles. Pass the input, options and surface of mcor_extract. After
+   * other calls, you may also ask for the last three warnings, which need only `statistics` of the
+   * surface. */
   mcor_message mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
@@ -973,14 +974,15 @@ extern "C"
     mcor_statistics statistics;
   } mcor_projection;
 
-  /* Computes column integrals of the SPH sum of the scalar, sum V A integral W, exact to 1e-6 of
-   * the most that one particle adds to a pixel. Without a scalar, integrates the density: a pixel
-   * then has the mass that falls into it, divided by its area. In two dimensions, the image shows
-   * the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and
-   * progress apply; if volumes are computed, the options of mcor_derive apply. The result has the
-   * same bits for any order of the particles. Each rank gets the whole image. If volumes are
-   * computed or h is estimated, ranks need boxes, globals (of mcor_measure_probe_globals), and
-   * `counted`, so that each particle counts once. *projection is overwritten. */
+  /* Computes column integrals of the scalar's SPH sum, sum V A W, with volumes V, the scalar A and
+   * the SPH kernel W. The result is exact to 1e-6 of the largest amount that one particle adds to a
+   * pixel. Without a scalar, integrates the density: a pixel then has the mass that falls into it,
+   * divided by its area. In two dimensions, the image shows the sum itself. Only fluid counts. The
+   * options sph_kernel, dimension, h_scale, periodic and progress apply; if volumes are computed,
+   * the options of mcor_derive apply. The result has the same bits for any order of the particles.
+   * Each rank gets the whole image. If volumes are computed or h is estimated, ranks need boxes,
+   * globals (of mcor_measure_probe_globals), and `counted`, so that each particle counts once.
+   * *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   /* Finds the size and place of the image, but not its values. */

@@ -167,10 +167,10 @@ extern "C"
     const mcor_named* arrays, int count, const mcor_ranks* ranks, mcor_found* found);
   void mcor_free_found(mcor_found* found);
 
-  /* Put smoothing lengths [count] of mcor_find_smoothing_lengths, or densities [count] of
-   * mcor_sum_densities, into an input that needs them. The arrays are borrowed until
-   * mcor_free_found. Densities become the scalar. If there are masses, but no other densities and
-   * no volumes, the densities also give the volumes. */
+  /* Put into an input what it needs: smoothing lengths [count], made by
+   * mcor_find_smoothing_lengths, or densities [count], made by mcor_sum_densities. The arrays are
+   * borrowed until mcor_free_found. Densities become the scalar. If there are masses, but no other
+   * densities and no volumes, the densities also give the volumes. */
   void mcor_take_lengths(mcor_found* found, const double* lengths);
   void mcor_take_densities(mcor_found* found, const double* densities);
 

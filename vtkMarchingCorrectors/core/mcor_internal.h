@@ -418,8 +418,8 @@ static inline void mcor_move_triangle(mcor_surface* surface, int64_t from, int64
 }
 
 /* Return the key of a brick, and of a node. rung: the rung of the brick's level. node: x, y, z, and
- * level << MCOR_LEVEL_SHIFT. Keys have the order of slots and vertices: by level, block, brick and
- * node, each by z, y, x. A cell has the key of its lowest node. */
+ * level << MCOR_LEVEL_SHIFT. Keys are in the order of slots and vertices: by level, then by block,
+ * brick and node, each of these by z, then y, then x. A cell has the key of its lowest node. */
 static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
 {
   uint64_t block = 0, number = 0;

@@ -10,7 +10,7 @@
 
 /* ---- mcor_column.c ----
  *
- * An SPH kernel, integrated along the line of sight: which share of the kernel projects onto a
+ * Integrates an SPH kernel along the line of sight, and finds which share of it projects onto a
  * rectangle. Lengths are in h. */
 
 /* E(x, y): the share of the kernel that projects onto the rectangle from the table's lower corner,

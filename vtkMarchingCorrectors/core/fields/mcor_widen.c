@@ -110,7 +110,7 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-/* If the factors are wanted, writes them in the input's order, and which particles are outside of
+/* If the factors are wanted, writes them in the input's order, and marks the particles outside of
  * the surface. If volumes are wanted, writes the volumes, which follow from the weights. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {

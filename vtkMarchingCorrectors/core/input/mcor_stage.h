@@ -39,7 +39,7 @@ typedef struct mcor_staging
   mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;
 
-/* Returns the factor that turns the input's volume or mass into the device's. */
+/* Returns the factor from the input's unit of volumes or masses to the device's unit. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input);
 /* Stages the input. The caller has set context and input. */
 mcor_status mcor_stage(mcor_staging* staging);

@@ -38,10 +38,10 @@ mcor_status mcor_flatten(
  * frees. are_points: the positions are points, not particles; points off the plane become NaN. */
 mcor_status mcor_flatten_positions(mcor_context* context, const mcor_array* positions,
   int64_t count, bool are_points, mcor_array* turned, double** flat);
-/* Turns the sides of a box. Across the plane, the box becomes infinite if it contains the plane,
- * else empty. */
+/* Turns the sides of a box into the plane's axes. Across the plane, the box becomes infinite if it
+ * contains the plane, else empty. */
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
-/* Turns the measures over all particles into the plane, or back. */
+/* Turns the measures of all particles into the plane's axes or, if `back` is set, back. */
 void mcor_turn_measure(mcor_measure* measure, bool back);
 /* Turns the statistics that belong to axes (lattice, extent, far_place) back to the caller's
  * axes. */

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Points of caps and of filled regions: evaluates the field at them, and appends them to the mesh's
- * vertices. */
+/* Evaluates the field at points of caps and of filled regions, and appends these points to the
+ * mesh's vertices. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"

@@ -34,10 +34,10 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
-/* Whether the tile's particles close to any of 2 x 2 x MCOR_LANES / 4 points lift all these points
- * above the iso value. at: the lowest point, in cubes from the query's origin; step: the distance
- * between points along each axis. The terms are added in another order than where a node is
- * evaluated; the margin of 1.0001 is larger than the difference of the sums. */
+/* Whether 2 x 2 x MCOR_LANES / 4 points are all above the iso value because of the tile's particles
+ * that are close to them. at: the lowest point, in cubes from the query's origin; step: the
+ * distance between points along each axis. The terms are added in another order than where a node
+ * is evaluated; the margin of 1.0001 is larger than the difference of the sums. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();

@@ -9,11 +9,11 @@
  * level. With several levels, mcor_march_hanging finds which cells that are not plain are used, and
  * marks their edges. */
 
-/* One work-item = one leaf. Reads the masks of the leaf's nodes. Treats only cells that are not
- * plain. Removes such a cell from `used` if it is not valid at all nodes, or if all its nodes are
- * on one side of the iso value. Marks the edges of the cells that stay. Writes to the leaf's slot
- * how many triangles (in a plane, lines) these cells have. Adds to flat_loops how many polygons of
- * the surface, in owned cells, lie in a single face of their cell. */
+/* One work-item = one leaf. Reads the masks of the leaf's nodes. Treats only cells that a finer
+ * brick touches (not plain). Removes such a cell from `used` if it is not valid at all nodes, or if
+ * all its nodes are on one side of the iso value. Marks the edges of the cells that stay. Writes to
+ * the leaf's slot how many triangles (in a plane, lines) these cells have. Adds to flat_loops how
+ * many polygons of the surface, in owned cells, lie in a single face of their cell. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -56,8 +56,9 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   }
 }
 
-/* One work-item = one brick. Reads the node masks. Keeps a plain cell in `used` only if it is valid
- * at all nodes, with nodes on both sides of the iso value. Writes the kept cells to plain_used. */
+/* One work-item = one brick. Reads the node masks. Keeps a plain cell (no finer brick touches it)
+ * in `used` only if it is valid at all nodes, with nodes on both sides of the iso value. Writes the
+ * kept cells to plain_used. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
   __global const ulong* plain, __global const ulong* above, __global const ulong* valid,
   __global ulong* used, __global ulong* plain_used)

@@ -17,8 +17,8 @@
  * Shepard mean with weights >= 0 lies between the least and the greatest value. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == MCOR_SHEPARD && !MCOR_TENSOR)
 
-/* Parameters on which a node's side depends. side_margin: the greatest rounding error of a mean of
- * values that are all on one side, as a share of each value; see mcor_side_margin in
+/* Parameters on which a node's side depends. side_margin: the greatest relative rounding error of a
+ * Shepard mean of values that are all on one side of the iso value; see mcor_side_margin in
  * mcor_seed.c. */
 typedef struct
 {
@@ -110,10 +110,10 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 /* If more particles than this reach a coarse cube, it is divided without computing a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
-/* Returns the state of a cube of nodes, the query's box. The tile may already hold the query's
- * particles, and may be used afterwards. coarse: saves work, so the result may be MCOR_EXAMINE
- * though a bound could decide. If the range of the particles' values decides, the result is a
- * certain side even if the cube, or a part of it, is void. */
+/* Returns the state of the query's box, a cube of nodes. The tile may already hold the query's
+ * particles, and may be used afterwards. coarse: saves work, but may return MCOR_EXAMINE where a
+ * bound would decide. If the range of the particles' values decides, returns the side that they are
+ * on, even if the cube, or a part of it, is void. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {
@@ -253,11 +253,11 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   }
 }
 
-/* Writes the state of a brick in an uncertain region. The state holds for the brick's nodes, and
- * for a leaf beside other levels also for the nodes on its far sides. wide: a tile of the particles
- * that reach the region; used only if complete. If a work-item evaluates whole bricks, also
- * evaluates the nodes of an uncertain brick, whose particles are already gathered. Returns a mask
- * of the evaluated nodes. */
+/* Writes the state of a brick in an uncertain region. The state holds for the brick's nodes and,
+ * for a leaf beside other levels, also for the nodes on the leaf's far sides. wide: a tile of the
+ * particles that reach the region; it is used only if it is complete. The particles of an uncertain
+ * brick are already gathered, so the brick's nodes are evaluated, too, if a work-item evaluates
+ * whole bricks. Returns a mask of the evaluated nodes. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)

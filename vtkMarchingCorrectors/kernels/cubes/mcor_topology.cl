@@ -8,9 +8,10 @@
  * two loops, i.e. closed polygons, come next: the field at the saddles of the trilinear interpolant
  * decides whether a tunnel joins the loops.
  *
- * With adaptive cubes, the field decides on faces between two plain cells of one level, and on
- * tunnels in plain cells; all other ambiguous faces follow the case table. Which faces the field
- * decides depends on the leaves alone, so cells on both sides agree. */
+ * A cell is plain if no finer brick touches it. With adaptive cubes, the field decides on faces
+ * between two plain cells of one level, and on tunnels in plain cells; all other ambiguous faces
+ * follow the case table. Which faces the field decides depends on the leaves alone, so the cells on
+ * both sides agree. */
 
 /* Whether the field at a sample, i.e. a point where the field is evaluated, is above the iso value.
  * value: the field minus the iso value; 1e30 if there is no Shepard mean at the sample, see

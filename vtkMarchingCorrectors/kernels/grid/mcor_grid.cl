@@ -262,9 +262,9 @@ bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
-/* One work-item = one sorted particle. If it is the first of several that differ at most in their
- * scalar, sorts these particles by their scalar, so that results never depend on the order of the
- * input. raw: the scalar in input order. */
+/* One work-item = one sorted particle. If it is the first of several that are alike in all but
+ * their scalar, sorts these particles by their scalar, so that results never depend on the order of
+ * the input. raw: the scalar in input order. */
 __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS,
   __global const real* raw, __global real* value, __global int* order)
 {
@@ -335,10 +335,10 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 #endif
 }
 
-/* Returns the factor that makes up for a side without neighbours in the density of a particle: 1 +
- * 5/3 D^2 with D^2 = variance |g|^2 / n^2, where g and n are the sums `fluid` and `size`, and the
- * variance is the SPH kernel's. one_sided: 5/3 variance. Solids may fill the empty side, but not
- * overfill it. So g becomes g + share * solids, with the share from 0 to 1 that makes |g| least. */
+/* A side without neighbours lowers a particle's density. Returns the factor that corrects this: 1 +
+ * 5/3 D^2 with D^2 = variance |g|^2 / n^2. g: the sum `fluid`; n: the sum `size`; variance: that of
+ * the SPH kernel; one_sided: 5/3 variance. Solids may fill the empty side, but not overfill it. So
+ * g becomes g + share * solids, with the share from 0 to 1 that makes |g| least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;

@@ -21,7 +21,7 @@ __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __
   valid[slot] = (valid[slot] & MCOR_PLANE_MASK) * 0x0000000000010001UL;
 }
 
-/* One work-item = one brick. Keeps the cells that are squares. */
+/* One work-item = one brick. Keeps the lowest layer of cells: their lower faces are squares. */
 __kernel void mcor_plane_squares(const int count, __global ulong* cells)
 {
   MCOR_ITEM(i, i < count);

@@ -61,9 +61,9 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
 /* A bracket of this length, as a share of the edge, is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
-/* Edges or lines. (ax, ay, az): the vector from end to end, in cubes; v0, v1: the values at the
- * ends, less the iso value. Only a line has a start (x, y, z), relative to its node, and the
- * field's slope at the start. A line has no v1. */
+/* The edges or lines along which vertices move, one in each lane. (ax, ay, az): the vector from end
+ * to end, in cubes. v0, v1: the values at the ends, less the iso value; a line has no v1. Only a
+ * line has a start (x, y, z), relative to its node, and `slope`, the field's slope at the start. */
 typedef struct
 {
   bool lines;

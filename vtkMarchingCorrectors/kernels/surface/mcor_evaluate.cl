@@ -80,8 +80,8 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
 }
 
 /* Writes offset, value, gradient, trimming weight and any attributes of a group's points. With
- * solids, the gradient's fourth number is the fluid's part of the weight. at: from the last call of
- * mcor_evaluate, which was for these points. */
+ * solids, the gradient's fourth number is the fluid's part of the weight. at: the result of the
+ * last call of mcor_evaluate, which must have been for these points. */
 MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, mcor_query* query,
   const mcor_points* points, real iso, mcor_reach* reach, const mcor_field_at* at,
   __global real4* offset, __global real* value, __global real4* gradient, __global real* weight,

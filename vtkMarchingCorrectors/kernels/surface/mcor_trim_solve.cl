@@ -69,7 +69,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
     s = lacks ? t : s;
   }
 #endif
-  /* Lengths are in cells of the lower of both levels, the level of vertex `low`. */
+  /* Lengths are in cells of the lower of the ends' levels, which is the level of vertex `low`. */
   const int level = node[low].w >> MCOR_LEVEL_SHIFT;
   const int up = (node[a].w >> MCOR_LEVEL_SHIFT) - level;
   const int up_b = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
@@ -87,9 +87,9 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
-/* Most steps back to where the Shepard mean exists. Each step goes half of the remaining way to the
- * edge's end, or to MCOR_TRIM_REACH if the end is farther. No step goes to the end itself, where
- * cuts of several edges would meet. */
+/* A vertex takes at most this many steps back to where the Shepard mean exists. Each step goes half
+ * of the remaining way to the edge's end, or to MCOR_TRIM_REACH if the end is farther. No step goes
+ * to the end itself, where cuts of several edges would meet. */
 #define MCOR_TRIM_RETREATS 12
 
 /* Greatest |weight - threshold| of a cut vertex. */
@@ -173,9 +173,10 @@ fixv mcor_trim_normalize(mcor_quantity* q)
   return none;
 }
 
-/* Finds Newton's step of least norm towards both field = iso and weight = threshold: -J^T (J
- * J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns the lanes without
- * a step: a gradient is 0, or both are parallel. */
+/* Finds Newton's step of least norm towards the place where field = iso and weight = threshold. It
+ * is -J^T (J J^T)^-1 (f, w), shortened to MCOR_TRIM_STEP if it is longer; the rows of J are the
+ * gradients of f and w. Returns the lanes in which a gradient is 0, or both are parallel: they have
+ * no step. */
 fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
 {
   const fixv flat = mcor_trim_normalize(&f) || mcor_trim_normalize(&w);

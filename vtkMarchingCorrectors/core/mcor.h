@@ -163,10 +163,10 @@ extern "C"
   {
     MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
     /* The smallest eigenvalue of the symmetric part of the matrix sum V (x_j - x) (outer product)
-     * grad W(x - x_j), over the particles of the trimming weight. This matrix is the inverse of the
-     * renormalisation matrix (Marrone et al. 2010). Set vertex_threshold, too: 0.3 trims about
-     * where a weight of 0.5 does; 0.75 trims 0.9 smoothing lengths inside a flat surface. Near 0.5
-     * the border is ragged. */
+     * grad W(x - x_j), over the particles that the trimming weight counts. This matrix is the
+     * inverse of the renormalisation matrix (Marrone et al. 2010). Set vertex_threshold, too: 0.3
+     * trims about where a weight of 0.5 does; 0.75 trims 0.9 smoothing lengths inside a flat
+     * surface. Near 0.5 the border is ragged. */
     MCOR_BOUNDARY_EIGENVALUE = 1
   } mcor_boundary_detection;
 
@@ -329,9 +329,9 @@ extern "C"
      * or below 0.05 with M'4, whose negative lobes may cancel the weight that the mean divides
      * by. */
     double vertex_threshold;
-    /* Above 0: any surface, even a free surface, also ends where the solids' share of the weight
-     * exceeds this, unless solids are ignored; 0.5: where solids weigh more than the fluid. 0: the
-     * surface does not end at solids. MCOR_WALL_SHARE_AUTO is the default, MCOR_WALL_SHARE_MEASURED
+    /* If above 0, any surface, even a free surface, also ends where the solids' share of the weight
+     * exceeds this, unless solids are ignored. 0.5: it ends where solids weigh more than the fluid.
+     * 0: it does not end at solids. MCOR_WALL_SHARE_AUTO is the default, MCOR_WALL_SHARE_MEASURED
      * another choice. */
     double wall_share;
     int preview; /* nonzero: vertices by linear interpolation, no correction */
@@ -376,8 +376,8 @@ extern "C"
      * mcor_probe and mcor_derive read the period, too; a probe's points may lie anywhere. */
     double periodic[6];
     /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are
-     * above the iso value; with a box, at those sides of its cells that lie on a periodic side.
-     * MCOR_CAP_BOX: triangles also close the other sides of the box's cells (with ranks: of
+     * above the iso value; with a box, they close those sides of its cells that lie on a periodic
+     * side. MCOR_CAP_BOX: triangles also close the other sides of the box's cells (with ranks: of
      * whole_box). Caps share the points of the surface's border; their other points are nodes, with
      * normals pointing out of the period or box, boundary flag 8, and a meaningless residual.
      * Trimming also cuts caps. The trimmed border stays open, and so does the border at solids (see
@@ -483,8 +483,8 @@ extern "C"
      * seed_cells_not_intersected: how many of the seed cells the surface does not use. These counts
      * and most of the following ones are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
-    /* Not summed over iso values: bricks that exist after the last iso value, and nodes that then
-     * have values, some of them from earlier calls. */
+    /* Counted after the last iso value, not summed over iso values: bricks that exist, and nodes
+     * that have values, some of them from earlier calls. */
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;

@@ -120,8 +120,8 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
-/* Prepares the search grid and the scalar for these options. Takes from the last call what still
- * holds. */
+/* Prepares the search grid and the scalar for these options. Reuses what is still valid of the last
+ * call. */
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

@@ -274,8 +274,8 @@ mcor_status mcor_gather_records(mcor_context* context, const void* records, int6
 /* mcor_statistics.c. Reports progress. doing: names the work that begins at `fraction` of the call
  * and goes on until `end`. The observer of progress may cancel the call. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
-/* Call it between two launches, or between two steps of a loop of the host. If the last report is
- * old enough, reports progress that is a bit nearer to the end. */
+/* Reports a little more progress than the last report, if that report is old enough. To be called
+ * between two launches, or between two steps of a loop of the host. */
 mcor_status mcor_report_launch(mcor_context* context);
 /* If the caller wants progress, the OpenCL layer calls this between launches (compiles: false), and
  * while programs are built (true). */

@@ -106,11 +106,11 @@ extern "C"
     double whole_box[6];
   };
 
-  /* Does what mcor_create_context does, for process or thread number `place`, from 0, of `count`
-   * that run side by side on a machine. Unless a number names the device, the processes take turns
-   * among all devices that have the platform and kind of mcor_create_context's device. If processes
-   * use the same CPU device, each has some of the processors. Results do not depend on which device
-   * or processors a process gets. */
+  /* Does what mcor_create_context does, for one of `count` processes or threads that run side by
+   * side on a machine. place: its number, from 0. Unless a number names the device, the processes
+   * take turns among all devices that have the platform and kind of mcor_create_context's device.
+   * If processes use the same CPU device, each has some of the processors. Results do not depend on
+   * which device or processors a process gets. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 

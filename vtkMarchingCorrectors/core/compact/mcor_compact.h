@@ -120,8 +120,8 @@ static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
   return mcor_is_merged(bunches, v) ? bunches->of[v].first : v;
 }
 
-/* Finds the places in the mesh of the corners of a triangle, or line. Returns whether these places
- * differ; if not, the triangle vanishes by merging. */
+/* Finds the places that the corners of triangle or line t have in the mesh after merging. Returns
+ * whether these places differ; if not, the triangle or line vanishes. */
 static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_t place[3])
 {
   for (int c = 0; c < 3; ++c)

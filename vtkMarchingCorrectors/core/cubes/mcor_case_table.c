@@ -186,8 +186,8 @@ static int mcor_side_cost(const mcor_strip* strip, int i, int j)
   return cost;
 }
 
-/* Tries all ways to continue a strip that has made `a` steps along the first loop and `b` steps
- * along the second. Keeps the cheapest strip. */
+/* Tries all ways to continue a strip of triangles that has gone `a` steps along the first loop and
+ * `b` steps along the second. Keeps the cheapest strip. */
 static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 {
   const mcor_adaptive_loop *first = &strip->first, *second = &strip->second;

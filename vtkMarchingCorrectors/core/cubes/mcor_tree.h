@@ -37,7 +37,7 @@ static inline int mcor_cluster_bit(uint64_t key)
   return (int)((key & 3) | (key >> 3 & 3) << 2 | (key >> 6 & 3) << 4);
 }
 
-/* Returns the mask of the first `count` of a cluster's four layers across an axis. */
+/* A cluster has four layers across an axis. Returns the mask of the first `count` layers. */
 static inline uint64_t mcor_layers(int axis, int count)
 {
   static const uint64_t layers[3][5] = { { 0, 0x1111111111111111, 0x3333333333333333,

@@ -54,9 +54,9 @@ static void mcor_read_points(
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
-    /* Points at either end of a period count as within it. Along a period, points are rounded, too,
-     * so that points a period apart get the same position. If a point is at an end that is not in
-     * the box, it moves to the other end. */
+    /* Points at either end of a period count as within it. Along a period, points are rounded, so
+     * that points that are a period apart get the same position. If a point is at an end that is
+     * not in the box, it moves to the other end. */
     const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
     for (int i = 0; i < count && period > 0; ++i)
     {

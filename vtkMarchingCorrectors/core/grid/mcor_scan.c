@@ -101,7 +101,7 @@ mcor_status mcor_sort(
     --most;
   }
   const int rounds = (key_bits + most - 1) / most, bits = (key_bits + rounds - 1) / rounds;
-  /* Between rounds, each key and its value share one number, if both fit into it. */
+  /* Between two rounds, each key shares one number with its value, if both fit into it. */
   const bool packs = key_bits + value_bits <= 64;
   mcor_buffer* sorted = packs ? values : &context->sort.values;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));

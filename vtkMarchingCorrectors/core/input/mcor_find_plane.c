@@ -88,7 +88,7 @@ static mcor_status mcor_refuse_plane(
 #define MCOR_COARSE_SHARE 0.125
 
 /* Drops a plane that seems to come from rounding: the plane's coordinate is a float, the step to
- * the next float is long for the particles' spacing, and most tested particles have a twin. */
+ * the next float is long against the particles' spacing, and most tested particles have a twin. */
 static mcor_status mcor_drop_rounded_plane(
   mcor_context* context, const mcor_input* input, mcor_plane* plane)
 {

@@ -269,8 +269,8 @@ static int mcor_exponent_of(const mcor_array* array, int64_t i)
   return exponent;
 }
 
-/* If a sum of squares lies between these limits, no square overflowed, and only squares that do not
- * matter vanished. */
+/* If a sum of squares lies between these limits, no square overflowed, and only squares too small
+ * to matter became 0. */
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 

@@ -67,7 +67,7 @@ double mcor_w_of(mcor_sph_kernel kernel, double q)
 
 /* ---- The tree ---- */
 
-/* Compares places along the Morton curve: by the axis with the highest bit that differs. */
+/* Compares two places on the Morton curve, by the coordinate that differs in the highest bit. */
 static int mcor_compare_places(const uint64_t p[3], const uint64_t q[3])
 {
   uint64_t most = 0;

@@ -76,8 +76,8 @@ int mcor_ring_of(const mcor_options* options); /* box.ring, if there is a box */
 /* Returns a distance, in cells of a particle's level. A particle is needed if its support ends at
  * most this far from the box. */
 double mcor_box_slack(const mcor_options* options);
-/* Returns the width of the ring with adaptive cubes, in cells of each level. A wide ring counts
- * double, because larger cells may lie between the ring and the box. */
+/* Returns how wide the ring is with adaptive cubes, in cells of each level. A ring of more than one
+ * cell becomes twice as wide, because larger cells may lie between the ring and the box. */
 static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;

@@ -45,7 +45,7 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
 
 #if MCOR_OF_LATTICE
 /* One work-item = one cube. Reads the states of the cube and of the cubes around it. Writes whether
- * the cube is inactive. A missing neighbour is off the lattice, or in a larger, inactive cube. */
+ * the cube is inactive. Places off the lattice, or in a larger, inactive cube, do not count. */
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {

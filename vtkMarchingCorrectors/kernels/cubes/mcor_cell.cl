@@ -163,8 +163,8 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
 #define MCOR_CUT_ARGS resolved, neighbours, decisions, cases, rows
 
 /* Returns the row by which a cell without finer nodes is triangulated. If the topology is resolved,
- * the field's decisions choose the row. Else the row joins the nodes above the iso value on no
- * ambiguous face. Adds 1 to *tunnels if the cell has a tunnel. */
+ * the field's decisions choose the row. Else the cell gets the first row of its case, which joins
+ * no nodes above the iso value on ambiguous faces. Adds 1 to *tunnels if the cell has a tunnel. */
 __global const mcor_cell_row* mcor_cell_cut(
   const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell, int* tunnels)
 {

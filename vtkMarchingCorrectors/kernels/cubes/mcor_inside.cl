@@ -29,8 +29,8 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* The proof reads a particle only at nodes within this share of the particle's support. */
 #define MCOR_INSIDE_SHARE 0.5f
 
-/* Whether the proof is tried. If a work-item evaluates whole bricks, mcor_seed_regions tries the
- * proof. If a work-item evaluates single nodes, mcor_seed_brick tries it. */
+/* Whether kernels try to prove that bricks are inside of the fluid: mcor_seed_regions if a
+ * work-item evaluates whole bricks, mcor_seed_brick if a work-item evaluates single nodes. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == MCOR_WEIGHT_SUM && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1

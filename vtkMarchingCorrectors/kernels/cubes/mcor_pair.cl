@@ -192,9 +192,9 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
 
 /* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles. Marks the
  * cells on the lines between these particles and their partners. Most particles are far from the
- * surface. So the kernel first tests whether values on both sides of the iso value occur around the
- * particles: once for successive particles whose x does not descend, then for each group. Only if
- * both tests succeed are the particles around a group read. */
+ * surface. So the kernel first tests whether values on both sides of the iso value occur around a
+ * whole run of particles whose x does not descend, then around each group of the run. The particles
+ * around a group are read only if both tests succeed. */
 __kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {

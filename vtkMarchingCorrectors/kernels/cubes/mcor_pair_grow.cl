@@ -4,7 +4,7 @@
 /* Grows the set of cells between pairs of particles [III-C], see mcor_pair.cl, from cell to cell
  * through crossed faces. */
 
-/* Whether any brick that has nodes of these cells lacks a slot, though its block exists. */
+/* Whether any node of these cells is in a brick beside theirs that has a block, but no slot. */
 bool mcor_pair_lacks(
   MCOR_BLOCK_PARAMS, __global const int* neighbours, int slot, int own, int4 brick, ulong cells)
 {

@@ -165,9 +165,9 @@ real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, re
 }
 
 /* Finds the saddles, within the cell, of the trilinear interpolant of corner values f, and returns
- * their number. x, xy, ..., xyz are the interpolant's coefficients. At a saddle all three
- * derivatives are 0. Then Q R = -a, P R = -b, P Q = -c, with P = xyz X + yz, Q = xyz Y + xz,
- * R = xyz Z + xy, and a, b, c as below. */
+ * their number. x, xy, ..., xyz are the interpolant's coefficients, and X, Y, Z are coordinates in
+ * the cell. Let P = xyz X + yz, Q = xyz Y + xz, R = xyz Z + xy, and a, b, c as below. At a saddle
+ * all three derivatives are 0; then Q R = -a, P R = -b, P Q = -c. */
 int mcor_topology_find_saddles(const real* f, real4 saddle[2])
 {
   const real x = f[1] - f[0], y = f[2] - f[0], z = f[4] - f[0];

@@ -13,9 +13,9 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Returns the number of one of 27 bricks, a leaf (x = y = z = 1) and the bricks around it, or of
- * one of a leaf's 27 parts: its inside (x = y = z = 1), faces, edges and corners. x, y, z are 0 to
- * 2. */
+/* Numbers the 27 places (x, y, z) with x, y, z from 0 to 2. Place (1, 1, 1) is a leaf, and the
+ * other places are the bricks around it. Or place (1, 1, 1) is the inside of a leaf, and the other
+ * places are its faces, edges and corners. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
 /* Whether a brick's nodes need no values, because its state tells that all are above the iso value,
@@ -147,8 +147,8 @@ bool mcor_request_brick(__global uint* brick_bits, int m)
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
-/* Adds cells to set number `at` of `cells`, the set of a brick or leaf: 64 bits in two words.
- * Returns the added cells that the set did not have. */
+/* Adds cells to the set of a brick or leaf: set number `at` of `cells`, which has 64 bits in two
+ * words. Returns the cells that are new in the set. */
 ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 {
   const uint low = (uint)added, high = (uint)(added >> 32);

@@ -103,7 +103,7 @@ MCOR_DEFINE_ATOMICS(uint, umin, umax)
   MCOR_DEFINE_MEMORY_IN(n, R, T, __global)                                                         \
   MCOR_DEFINE_MEMORY_IN(n, R, T, __private)
 
-/* Defines `any` or `all`: whether any, or all, of the n integers F of a mask I are below 0. */
+/* Defines `any` or `all`: whether any, or all, of the n integers (type F) in a mask are below 0. */
 #define MCOR_DEFINE_TOGETHER(n, I, F, name, first, operator)                                       \
   MCOR_DEFINE int name(I x)                                                                        \
   {                                                                                                \

@@ -30,9 +30,9 @@ bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mc
   return rest < MCOR_TILE_SHARE * grid->levels[0].support;
 }
 
-/* Returns how many groups from `begin` on, before `end`, fit into one cluster, at least 1. Fits a
- * query to the box around the points of these groups; the query's origin is a node in the middle of
- * the box. */
+/* Returns how many of the groups begin, begin + 1, ..., end - 1 fit into one cluster: at least 1.
+ * Fits the query to the box around the points of these groups. The query's origin is a node in the
+ * middle of the box. */
 int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,
   __global const int4* node, __global const real4* offset, mcor_query* query)
 {

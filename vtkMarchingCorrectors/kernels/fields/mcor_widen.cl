@@ -24,7 +24,7 @@
 /* At the surface of deep water, the weight sum may be this far below the iso value. */
 #define MCOR_WIDEN_OUTSIDE ((real)0.08f)
 
-/* At the rim of a sheet, the margin is wider by this share. */
+/* At the rim of a sheet, the margin above the iso value is wider by this share. */
 #define MCOR_WIDEN_RIM ((real)0.5f)
 
 /* Limits of the distance from a particle to the middle of its neighbours, in smoothing lengths.
@@ -353,10 +353,10 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real i
   MCOR_STORE(result, begin, limited);
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
- * mcor_widen_solve wrote for the listed ones. Writes to `outside` whether a particle is inside with
- * its own length (the weight sum is at least the iso value), but outside with the length times the
- * factor (the weight sum is below the iso value). */
+/* One work-item = MCOR_LANES sorted particles. Reads the factors, which particles mcor_widen_solve
+ * has treated (`listed`), and what it wrote to `outside` for these. Writes to `outside` whether
+ * each particle is inside with its own length (the weight sum is at least the iso value), but
+ * outside with the length times the factor (the weight sum is below the iso value). */
 __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   __global const real* sizes, __global const real* factor, __global const int* listed,
   __global int* outside)

@@ -67,8 +67,8 @@ fixv mcor_tile_near(const mcor_tile* tile, int i, const mcor_span* box, realv sh
     MCOR_TILE(tile, inv_h, i), box, share);
 }
 
-/* Lists the places in the tile of the particles that are nearer to a box than `share` times their
- * support. Returns the number of these particles. */
+/* Lists which of a tile's particles are nearer to a box than `share` times their support, by their
+ * places in the tile. Returns the number of these particles. */
 int mcor_tile_list(const mcor_tile* tile, const mcor_span* box, realv share, int* list)
 {
   int count = 0;
@@ -170,8 +170,8 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return true;
 }
 
-/* Fills a tile, but not its list, from a complete tile of a query that has the same origin and a
- * box that encloses the box of `query`. */
+/* Fills `tile`, but not its list, with the particles of `wide` that `query` would find. wide: a
+ * complete tile of another query that has the same origin and a box around the box of `query`. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
   const mcor_span box = query->box;
@@ -262,8 +262,8 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
   }
 }
 
-/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. Shorter
- * lists are filled up with 0, i.e. no weight. */
+/* Packs those elements of a tile's array that the mask of each part selects. Element i of part p
+ * goes to to[i * MCOR_PARTS + p]. Shorter parts are filled up with 0, i.e. no weight. */
 void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
 {
   MCOR_ALIGNED real packed[MCOR_PARTS][MCOR_TILE_SIZE + 2 * MCOR_LANES];

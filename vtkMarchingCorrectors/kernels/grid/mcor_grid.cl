@@ -228,9 +228,9 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, MCOR_
   }
 }
 
-/* One work-item = one particle. Turns the particle's volume, in trim_weight (below 0 for solids),
- * into the trimming weight V norm / (scaled h)^3. Writes to `weight` the same, but 0 for solids.
- * norm: the SPH kernel's norm. */
+/* One work-item = one particle. Reads from trim_weight the particle's volume V or, for a solid, -V.
+ * Writes in its place the trimming weight V norm / (scaled h)^3. Writes to `weight` the trimming
+ * weight of fluid, and 0 for solids. norm: the SPH kernel's norm. */
 __kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
   __global real* weight, __global real* trim_weight)
 {

@@ -28,8 +28,8 @@ typedef struct
   real edge[3]; /* length of an edge, at most 1 */
   fix step[3];  /* length of an edge, from node to node, in fixed-point units */
   __global const mcor_level* levels;
-  /* bucket_shift 0: the first particle of each cell. Else, for each bucket, the index in cell_keys
-   * of the first key that is at least bucket << bucket_shift. */
+  /* If bucket_shift is 0: the first particle of each cell. Else: for each bucket, the index in
+   * cell_keys of the first key that is at least bucket << bucket_shift. */
   __global const int* buckets;
   __global const ulong* cell_keys; /* keys of the cells that have particles, sorted */
   __global const int* cell_begins; /* each such cell's first particle; then particle_count */
@@ -194,8 +194,8 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Skips empty rows: moves to the row before the level's next row with particles. If that next row
- * has another z, moves to the last row before this z. */
+/* Skips empty rows, so that mcor_query_next_row goes on with the level's next row that has
+ * particles or, if that row has another z, with the first row at this z. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Marching squares, on the lowest layer of the lattice's cells: a square is the lower face of a
- * cell. The cell's upper nodes have the signs of the nodes in the plane, so all code that finds
- * cells and nodes works for squares, too.
+ * cell. The cell's upper nodes are on the same side of the iso value as the nodes below them in the
+ * plane, so all code that finds cells and nodes works for squares, too.
  *
  * A square's side is halved if a finer square touches the side, so a square is a polygon of 4 to 8
  * nodes. Each crossed side, or crossed half of a side, has one vertex. The two squares that meet
@@ -12,8 +12,8 @@
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL
 
-/* One work-item = one brick. Copies the signs of nodes in the plane to the layers above. Only the
- * first of these layers can be valid, so that only one layer of cells can be used. */
+/* One work-item = one brick. Copies the bits of nodes in the plane to the layers above: `above` to
+ * all layers, `valid` only to the first, so that only one layer of cells can be used. */
 __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __global ulong* valid)
 {
   MCOR_ITEM(slot, slot < brick_count);

@@ -44,11 +44,11 @@ real mcor_trim_fraction(real wa, real wb, real w)
 }
 
 /* One work-item = one cut vertex. Writes the vertex's position, as the nearer end's node and an
- * offset. The weights are taken as linear along the mesh edge. The position is where the weight
- * equals the threshold. But if the fluid's own weight sinks to the least that a Shepard mean needs
- * nearer to the inner end, the position is there. The inner end is the one that is not trimmed. The
- * position stays away from the ends, because cut vertices of several edges would meet at an end.
- * The position's bits do not depend on the order of vertices. Writes the vector to the inner end in
+ * offset. The weights are taken as linear along the mesh edge, from its inner end (the one that is
+ * not trimmed) to its other end. The position is the first place where the weight sinks to the
+ * threshold or, for a Shepard mean, the fluid's own weight sinks to MCOR_LEAST_FLUID. The position
+ * stays away from the ends, because cut vertices of several edges would meet at an end. The
+ * position's bits do not depend on the order of vertices. Writes the vector to the inner end in
  * place of the gradient; its fourth number is whether the fluid's own weight decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
@@ -119,9 +119,9 @@ void mcor_quantity_choose(fixv lanes, const mcor_quantity* other, mcor_quantity*
 }
 
 /* A point exceeds each limit of trimming by some excess, which may be negative. Finds the least
- * excess of each point, and the gradient of this excess. at: from the last evaluation, which was
- * for these points. The fluid's own weight is a limit only in the lanes `lacking`. For a weight sum
- * with a fluid_share above 0, the fluid's share is the only limit. */
+ * excess of each point, and the gradient of this excess. at: what mcor_evaluate has found at these
+ * points. The fluid's own weight is a limit only in the lanes `lacking`. For a weight sum with a
+ * fluid_share above 0, the fluid's share is the only limit. */
 void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
   mcor_quantity* bound)
@@ -228,8 +228,8 @@ fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim
   return moved;
 }
 
-/* Moves the sought points of a group to where field = iso and weight = threshold. Returns the
- * points for which this fails near `start`; their positions are then arbitrary. */
+/* Moves points of a group (those in `sought`) to where field = iso and weight = threshold. Returns
+ * the points for which this fails near `start`; their positions are then arbitrary. */
 fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
   const realv start[3], fixv sought, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {

@@ -159,9 +159,10 @@ mcor_status mcor_prepare(
   return MCOR_OK;
 }
 
-/* Runs a call. Leaves out the particles that the globals leave out as far away. Without globals,
- * runs the body again without far particles if the lattice around all particles is too long. After
- * a failure, or if particles were left out, nothing that the context keeps counts as valid. */
+/* Runs a call. With globals, leaves out the particles that were left out as far away when the
+ * globals were measured. Without globals, runs the body again without far particles if the lattice
+ * around all particles is too long. After a failure, or if particles were left out, later calls
+ * reuse nothing. */
 static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)

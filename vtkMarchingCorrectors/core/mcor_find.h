@@ -102,11 +102,11 @@ extern "C"
     int lengths_by_neighbours;     /* nonzero: the estimate is mcor_find_smoothing_lengths */
     int smoothing_length_is_support_radius;
     /* fluid_value: the value of fluid particles in the array that is given for MCOR_ROLE_FLUID. If
-     * the name given is "Block: NAME", the array MCOR_WALL_BLOCK is used if there is one; fluid
-     * particles then have the value 0. find_fluid tells what MCOR_WANT_FLUID does. 0: no array is
-     * used; unused_type names an array that may tell which particles are fluid. 1: an array that
-     * tells this without doubt is used; else as 0. 2: as 1, but if there is no array to name,
-     * unused_type says so. */
+     * the given name is "Block: NAME" and there is an array MCOR_WALL_BLOCK, this array is used,
+     * and fluid particles have the value 0 in it. find_fluid: what MCOR_WANT_FLUID does if no array
+     * is given. 0: uses no array, but mcor_found.unused_type names an array that may tell which
+     * particles are fluid. 1: uses an array that tells this without doubt; if there is none, does
+     * as with 0. 2: does as with 1, but if there is no array to name, unused_type says so. */
     double fluid_value;
     int find_fluid;
     int ignore_solids;

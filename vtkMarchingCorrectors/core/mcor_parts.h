@@ -101,8 +101,9 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* The box of which the boxes of all ranks are parts, as mcor_options.box; all 0: only periods
-     * bound the whole surface. A vertex that several ranks have is in one rank's statistics. */
+    /* The box of the whole surface, as mcor_options.box; each rank's box is a part of it. All 0:
+     * only periods bound the surface. If several ranks have a vertex, one rank's statistics count
+     * it. */
     double whole_box[6];
   };
 
@@ -119,9 +120,9 @@ extern "C"
    * unless globals are given; globals must be measured with the moved period. */
   void mcor_move_period(mcor_options* options);
 
-  /* Measures an input for options.globals of later calls, in this or another context, with
-   * otherwise the same options. Overwrites *globals; free it with mcor_free_globals.
-   * Fails with MCOR_INVALID_DATA if no rank has any particles. */
+  /* Measures an input. Later calls, in this or another context, get the result as options.globals;
+   * their other options must be the same as here. Overwrites *globals; free it with
+   * mcor_free_globals. Fails with MCOR_INVALID_DATA if no rank has any particles. */
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
@@ -138,8 +139,8 @@ extern "C"
   double mcor_reach_around(const mcor_options* options, int computes_volumes, double widest,
     double reach, double margin);
 
-  /* Area and volume of a surface in parts, with the same bits as in the statistics of the whole
-   * surface. The numbers 1 and 2 tell when a member is reduced, see mcor_measure_terms. */
+  /* Area and volume of a surface in parts, with the same bits as in the whole surface's statistics.
+   * The marks 1 and 2 tell when a member is reduced over all parts, see mcor_measure_terms. */
   typedef struct mcor_measures
   {
     double origin[3];       /* any point; for the same bits, the first one of the whole surface */

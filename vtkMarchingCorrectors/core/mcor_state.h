@@ -136,9 +136,9 @@ typedef struct mcor_mesh
     cut_edges; /* ulong: the edge that each vertex of the trim boundary is on, see mcor_trim.cl */
   mcor_buffer triangles;
   mcor_buffer scanned; /* int: numbers of vertices in the output, see mcor_is_output */
-  /* march_count: vertices on lattice edges. vertex_count: these, then the vertices on the trim
-   * boundary, then, from cap_first on, the vertices of caps. Vertices on lattice edges are sorted
-   * by level, and so are vertices on the trim boundary. */
+  /* march_count: the number of vertices on lattice edges, which come first. Then come vertices on
+   * the trim boundary, then, from cap_first on, vertices of caps. vertex_count: all vertices.
+   * Vertices on lattice edges are sorted by level, and so are vertices on the trim boundary. */
   int march_count;
   int vertex_count;
   int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */

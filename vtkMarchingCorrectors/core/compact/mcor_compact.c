@@ -153,8 +153,8 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
 /* ---- All of it ---- */
 
 /* Moves the slice's triangles whose corners still differ to the front of the slice. Each corner
- * becomes the place of its vertex in the mesh; for an appended vertex, the place of the vertex that
- * it replaces, see mcor_end_bunches. */
+ * becomes the place of its vertex in the mesh. If the vertex is an appended one, the corner becomes
+ * the place of the vertex that the appended one replaces, see mcor_end_bunches. */
 static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_bunches* bunches = data;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bunches of a marched mesh, and which of them are merged.
+/* Finds bunches of vertices that may be merged, see mcor_compact.c, and chooses which are merged.
  *
  * Merging must leave a manifold with the same pieces. For this, two conditions suffice: each merged
  * bunch can be contracted to a point, and any two vertices of the result are joined by one edge at

@@ -185,7 +185,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, int a, int b)
 {
   const MCOR_TYPE(uint) common = loop->facets[a] & loop->facets[b], faces = common >> 24;
-  /* Forbidden: both ends are in one sub-face or whole face, or on one edge, i.e. in two faces. */
+  /* A diagonal is forbidden if both ends are in one part of a split face, in one face that is not
+   * split, or on one edge, i.e. in two faces. */
   int cost = (common & 0xffffff) || (faces & (faces - 1)) ? MCOR_ADAPTIVE_FORBIDDEN : 0;
   if (split)
   {

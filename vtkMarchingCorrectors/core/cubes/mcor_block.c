@@ -72,16 +72,16 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     context, keys, *parts + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* Makes the blocks, except those in inactive larger cubes, and finds their states. If bricks have
- * slots already, also keeps all earlier blocks. */
+/* Makes the blocks that may have surface, by dividing larger cubes, and finds the blocks' states.
+ * If bricks have slots from an earlier iso value or call, also keeps all blocks made then. */
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_rung* rungs = context->lattice.rungs;
   uint64_t total = UINT64_MAX;
   int level = -1;
-  /* Numbers the cubes of all levels, from the blocks (level 0) to the first cubes. A cube is 32 <<
-   * level nodes long. */
+  /* Numbers the cubes of all levels. Level 0 has the blocks, the highest level the first cubes. A
+   * cube is 32 << level nodes long. */
   for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
        rungs[level + 1].base = rungs[level].base + total)
   {

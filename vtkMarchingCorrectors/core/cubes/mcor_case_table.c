@@ -162,9 +162,9 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
   }
 }
 
-/* A strip of triangles between two loops. Each triangle has sides (a, b), from vertex a of the
- * first loop to vertex b of the second. A step from such a side, either along the first loop or
- * back along the second, adds a triangle. */
+/* A strip of triangles between two loops. A side (a, b) goes from vertex a of the first loop to
+ * vertex b of the second loop. A triangle lies between two successive sides: a step from one side
+ * to the next goes along the first loop or back along the second, and adds a triangle. */
 typedef struct mcor_strip
 {
   mcor_adaptive_loop first, second;

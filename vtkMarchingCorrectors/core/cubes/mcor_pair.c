@@ -13,8 +13,8 @@
 
 #include "mcor_box.h"
 
-/* Returns the number of bricks in all blocks. Masks of cells are indexed by the bricks' numbers,
- * because most bricks have no slot. */
+/* Returns the number of bricks in all blocks. Each brick has a mask of reached cells, which is
+ * indexed by the brick's number, because most bricks have no slot (place for node values). */
 static size_t mcor_count_places(const mcor_context* context)
 {
   return (size_t)context->bricks.block_count * MCOR_BLOCK_BRICKS;

@@ -82,9 +82,9 @@ bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int 
  * the position of the cluster's first brick. */
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
 /* Adds a brick, or its image in the first period, to a set, unless the brick is off the lattice.
- * Returns false in the same cases as mcor_set_add. */
+ * Returns false if memory ran out, or if the set is too large, see mcor_set_add. */
 bool mcor_set_add_brick(const mcor_tree* tree, int level, const int brick[3], mcor_brick_set* set);
-/* Fails unless `fit` is set: there may be too many leaves, or memory for them ran out. */
+/* Fails if `fit` is false: there are too many leaves, or memory for them ran out. */
 mcor_status mcor_leaves_fit(mcor_context* context, bool fit);
 
 /* mcor_tree_split.c. Finds all split bricks, from the particles of all ranks. */

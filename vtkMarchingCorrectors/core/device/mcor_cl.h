@@ -54,8 +54,8 @@ typedef enum mcor_program
   MCOR_PROGRAM_CELLS,   /* marching, and triangles that are cut; lines in two dimensions */
   MCOR_PROGRAM_LEAVES,  /* adaptive cubes */
   MCOR_PROGRAM_CHOICES, /* topology, boxes, pairs */
-  /* The next seven programs are compiled for each build that makes surfaces. Two of them are the
-   * same for all fields. */
+  /* The next seven programs make surfaces. They are compiled for each mcor_build (SPH kernel,
+   * field, precision, solids), but two of them are the same for all fields. */
   MCOR_PROGRAM_ATTRIBUTES, /* does not depend on the field */
   MCOR_PROGRAM_DENSITY,    /* computed volumes, of any call; does not depend on the field */
   MCOR_PROGRAM_NODES,      /* seeds and values at nodes */

@@ -142,9 +142,9 @@ static void mcor_query_device(mcor_cl* cl)
   clGetDeviceInfo(
     cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof cl->width, &cl->width, NULL);
   cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && cl->width > 1;
-  /* PoCL reads its long headers anew for each program, one program at a time, and compiles kernels
-   * when they are launched. So small programs save nothing there, nor on the built-in device, which
-   * compiles nothing. */
+  /* Builds large programs where small ones save nothing: with PoCL, which reads its long headers
+   * anew for each program, one program at a time, and compiles kernels when they are launched; and
+   * on the built-in device, which compiles nothing. */
   cl->builds_sets = cl->is_cpu && (mcor_is_native(cl) || mcor_is_pocl(cl->platform_name));
   /* A CPU with the form for GPUs counts as a device with memory of its own, so that tests reach the
    * code for such devices, too. */
@@ -175,8 +175,8 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
 }
 
 /* Divides a CPU among `count` processes, of which this one is number `place`. If the driver cannot
- * divide the CPU, each process uses all of it. A share of the built-in device is a number of
- * threads. */
+ * divide the CPU, each process uses all of it. Does not divide the built-in device; its pool has
+ * fewer threads instead. */
 static void mcor_take_share(mcor_cl* cl, int place, int count)
 {
   cl_uint units = 1, parts = 0;

@@ -35,7 +35,7 @@ static mcor_instructions mcor_ask_processor(void)
                                                                      : MCOR_INSTRUCTIONS_V3;
 }
 
-/* Asks once: every launch wants to know, and in virtual machines the question takes long. */
+/* Asks the processor once: each launch needs the answer, which takes long in virtual machines. */
 static mcor_instructions mcor_own_instructions(void)
 {
   static atomic_int known; /* the answer + 1; 0: not asked yet */

@@ -86,7 +86,7 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
     : set & MCOR_PARTS_FIELD                  ? 1
                                               : 2;
   /* Programs that do not depend on the field are compiled as for a free surface. In the form for
-   * GPUs, which has one lane, probes do not depend on solids either. */
+   * GPUs (one lane), the program for probes does not depend on solids either. */
   const int without_field =
     1 << MCOR_PROGRAM_ATTRIBUTES | 1 << MCOR_PROGRAM_DENSITY | MCOR_PARTS_PROBE;
   const mcor_field field = set & without_field ? MCOR_WEIGHT_SUM : build->field;

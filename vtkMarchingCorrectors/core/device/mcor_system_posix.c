@@ -61,7 +61,7 @@ mcor_function mcor_system_opencl(void)
 {
   mcor_function found = NULL;
 #ifndef __APPLE__ /* objects of Apple's OpenCL do not begin with tables of functions */
-  /* The program may have a loader already, or a tool in place of one. */
+  /* The program may have loaded OpenCL already, or a tool that replaces it. */
   *(void**)&found = dlsym(RTLD_DEFAULT, "clGetPlatformIDs");
   void* loader = found ? NULL : dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
   if (loader)
@@ -72,7 +72,7 @@ mcor_function mcor_system_opencl(void)
   return found;
 }
 
-/* The address space that a driver's libraries take, a compiler among them. */
+/* The address space that a driver needs for its libraries, which include a compiler. */
 #define MCOR_DRIVER_BYTES ((size_t)256 << 20)
 
 static void* mcor_wait_at_gate(void* gate)

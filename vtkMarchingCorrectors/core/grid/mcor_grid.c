@@ -202,9 +202,9 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   return mcor_index_cells(context, cells);
 }
 
-/* The factor of D^2 in a density, which makes up for a side without neighbours, see
- * mcor_density_factor. With 5/3, the uppermost layer of a lattice at rest has its true volume
- * within 0.7 %, for all kernels and smoothing lengths. */
+/* At a particle without neighbours on one side, the density sum is too low; so it is multiplied by
+ * 1 + MCOR_ONE_SIDED * D^2, see mcor_density_factor. With 5/3, the uppermost layer of a lattice at
+ * rest has its true volume within 0.7 %, for all kernels and smoothing lengths. */
 #define MCOR_ONE_SIDED (5.0 / 3)
 
 /* Computes the volume of each particle j, m_j / ((1 + 5/3 D^2) sum_k m_k W(x_j - x_k, h_j)). m: the
@@ -226,8 +226,8 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   cl_int first = INT32_MAX;
   mcor_find_evaluated(context, low, high);
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
-  /* mcor_grid_weight divides by the cube of its argument h_scale. In two dimensions, the argument
-   * is such that this cube is the square of the scale. */
+  /* mcor_grid_weight divides by the third power of its argument h_scale. In two dimensions it must
+   * divide by scale^2, so the argument is the cube root of scale^2. */
   const double scale = context->run.options->h_scale;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(context->space.flat ? mcor_cube_root(scale * scale) : scale),
@@ -353,9 +353,9 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
     MCOR_INT(to_row));
 }
 
-/* Copies the scalar A, less a shift A0, to the sorted particles; with a weight sum, only sets A0 to
- * 0. For a Shepard mean A0 is near most values, else A0 is 0. The mean of A - A0 is the mean of A
- * less A0, and A - A0 keeps the digits of a scalar with a large offset or a few huge peaks. */
+/* Copies the scalar A, less a shift A0, to the sorted particles. With a weight sum, only sets A0 to
+ * 0. For a Shepard mean, A0 is the median of A, else 0. The mean of A - A0 is the mean of A less
+ * A0, and A - A0 keeps the digits of a scalar with a large offset or a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;

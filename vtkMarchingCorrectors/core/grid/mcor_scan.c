@@ -160,8 +160,8 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Lists the distinct keys among sorted keys. begins: the index of the first of each run of equal
- * keys, then, at the end, the number of all keys. */
+/* Lists the distinct keys among sorted keys. begins: for each distinct key, the index at which it
+ * first occurs; then, as the last element, the number of all keys. */
 mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
   mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count)
 {

@@ -268,9 +268,9 @@ int mcor_find_given(mcor_finder* f, const char* words, const char* name, int com
     : mcor_refuse(f, mcor_say(MCOR_SAY(ARRAY_OF_VECTORS), mcor_called(f, words, name), has));
 }
 
-/* Sets the view of a role: to the array that the caller names for the role or, without a name, to
- * the array that was found before. words: what the array is for. Returns whether there is an
- * array. */
+/* Takes the array that the caller names for a role or, without a name, the array that was found for
+ * the role before. Writes its index and view to f->found. words: what the array is for, in an error
+ * sentence. Returns whether there is an array. */
 static bool mcor_take_role(mcor_finder* f, mcor_role role, const char* words, int components)
 {
   const char* name = mcor_given_name(f, role);
@@ -420,9 +420,9 @@ static void mcor_find_sizes(mcor_finder* f)
     used == 0 && !r->compute_volumes ? r->particle_volume : input->volume.constant;
   const bool is_density =
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
-  /* No array is reported as unused if it is used. A flux uses masses and densities besides volumes.
-   * So does a projection without a scalar array, because it integrates the density. The scalar
-   * MCOR_SUMMED uses masses. */
+  /* Masses and densities that do not give volumes may be used for something else; then they are not
+   * reported as unused. A flux uses them besides volumes. So does a projection without a scalar
+   * array, because it integrates the density. The scalar MCOR_SUMMED uses masses. */
   const bool uses_all = (r->wants & MCOR_WANT_FLOW) != 0 || is_density;
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
   if (!(r->wants & MCOR_WANT_LIST))

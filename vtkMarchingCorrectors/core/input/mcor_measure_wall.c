@@ -75,8 +75,9 @@ static void mcor_wall_add(
                                           : mcor_w_of(kernel, sqrt(mcor_dot(d, d)) * inv_h);
     if (w != 0 && weight == 0)
     {
-      /* Shares depend neither on the unit of volumes nor on the kernel's norm. So mass times h^d
-       * (d: the dimension) serves while volumes are unknown, and the norm in space in a plane. */
+      /* The solids' share of the weight depends neither on the unit of volumes nor on the kernel's
+       * norm. So mass times h^d (d: the dimension) replaces a volume that is not known yet, and the
+       * norm of three dimensions is used in two dimensions, too. */
       const int axes = wall->context->space.axes;
       const bool is_mass = mcor_needs_density(wall->input);
       mcor_read_size(wall->input, i, 1, &weight);

@@ -242,7 +242,8 @@ static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const dou
   }
 }
 
-/* Lists the particles and periodic images of particles within the support of h around x. */
+/* Lists the neighbours of x: the particles, and periodic images of particles, that are nearer to x
+ * than the support radius for the smoothing length h. */
 static void mcor_list_neighbours(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {

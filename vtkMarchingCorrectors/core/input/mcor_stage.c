@@ -109,8 +109,8 @@ static int mcor_images_of(
     staging->reach, at, mcor_reach_of(staging->reach, h, chunk->level[i]), images);
 }
 
-/* Marks the particles of [first, last) that may reach the box, by their coordinates along axes
- * without a period. Only few marked particles fail the exact test of their images later. */
+/* Marks the particles of [first, last) that may reach the box. Reads only coordinates along axes
+ * without a period. A later test of all periodic images is exact; few marked particles fail it. */
 static void mcor_mark_near(const mcor_staging* staging, int64_t first, int64_t last)
 {
   const mcor_reach_box* reach = staging->reach;
@@ -215,7 +215,7 @@ MCOR_VECTOR_LOOPS static void mcor_store_stage_chunk(
   const int count = chunk->count, top = context->lattice.levels - 1;
   const double h_scale = context->run.options->h_scale, cube = context->lattice.cube;
   const double reach = mcor_support_factor(context->run.options->sph_kernel) * h_scale;
-  /* Rounds positions to the digits that evaluations use. */
+  /* Rounds positions if evaluations do not use all their digits, see mcor_spared_bits. */
   const bool are_rounded = mcor_spared_bits(context, m->support_max, cube, top) > 0;
   double unit = 1;
   for (int i = 0; i < count && are_rounded; ++i)
@@ -562,8 +562,8 @@ mcor_status mcor_stage(mcor_staging* staging)
   const mcor_measure* m = &context->measure;
   const bool one_volume = !input->volume.data && !input->mass.data && !input->density.data;
   mcor_reach_box reach;
-  /* With solids, lengths and sizes may differ: solids' lengths are not measured, and their sizes
-   * are negative. */
+  /* If there are solids, it is not known whether all lengths and sizes are the same: solids'
+   * lengths are not measured, and solids' sizes are negative. */
   staging->one_inv_h = !input->solid && !mcor_is_given(&input->widening) && m->h_min == m->h_max;
   staging->one_size = !input->solid && one_volume && (staging->one_inv_h || !context->space.flat);
   staging->size_scale = mcor_size_scale(context, input);

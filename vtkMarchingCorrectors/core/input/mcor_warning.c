@@ -112,8 +112,9 @@ static double mcor_single_step(double largest)
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
 }
 
-/* Whether steps of single precision are too long at the largest coordinate, and all of the fluid's
- * coordinates are numbers of single precision. axis, step: the axis and step of this coordinate. */
+/* Whether all of the fluid's coordinates are numbers of single precision, and the step from the
+ * largest coordinate to the next such number is long for the particles' spacing. *axis, *step: the
+ * axis of the largest coordinate, and this step. */
 static bool mcor_is_coarse(const mcor_suspicion* s, int* axis, double* step)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -295,8 +296,8 @@ static mcor_message mcor_warn_trimmed(const mcor_suspicion* s)
  * nobody sees them. If they move the field by more than its tolerance, another warning says so. */
 #define MCOR_MOST_POSITION_ERROR 1e-4
 
-/* Errors of positions below this share of the cube size need no warning either: even short grids
- * have such errors. */
+/* Errors of positions below this share of the cube size need no warning either, because even a grid
+ * of few cubes has such errors. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
 static mcor_message mcor_warn_precision(const mcor_suspicion* s)

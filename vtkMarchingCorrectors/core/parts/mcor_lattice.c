@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The virtual grid [III-B]. With periods, the grid covers one period and what images of the
- * particles may reach around it, see mcor_box.c. */
+/* The virtual grid [III-B]. If particles repeat with a period, the grid covers one period and,
+ * around it, all that the needed periodic images of particles may reach, see mcor_box.c. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"
@@ -115,8 +115,8 @@ static mcor_status mcor_check_digits(mcor_context* context, double low, double h
   return MCOR_OK;
 }
 
-/* Finds the cubes' edges, the lengths of the periods in cells, and the bounds along periods
- * (measure.low, high), which hold the needed images. May lower *top, the highest level. */
+/* Finds the edges of the cubes and, along each axis with a period, the period's length in cells and
+ * the bounds (measure.low, high) that hold all needed images. May lower *top, the highest level. */
 static mcor_status mcor_fit_period(
   mcor_context* context, const mcor_options* options, double cube, int* top)
 {
@@ -173,7 +173,7 @@ static mcor_status mcor_fit_period(
 
 /* ---- Unequal edges ---- */
 
-/* The least length of the longest edge is 1 - 1 / MCOR_STEP_RANGE cubes. */
+/* If edges along x, y, z differ, the longest is at least 1 - 1 / MCOR_STEP_RANGE cubes long. */
 #define MCOR_STEP_RANGE 16
 
 /* Chooses how many fixed-point units long each edge is. A unit must have the same length along all
@@ -186,9 +186,9 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
   const double* edge = lattice->edge;
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
-  /* spared: how many of the lowest bits of unequal edges, in fixed-point units, are 0. They are as
-   * many as mcor_spared_bits gives for positions of particles with the longest supports, or more if
-   * a double could not hold the coordinates of all nodes exactly otherwise. */
+  /* spared: how many of the lowest bits of an edge's length, in fixed-point units, are 0 if edges
+   * are unequal. Edges are rounded as coarsely as positions of particles with the longest supports,
+   * or more coarsely if a double could not hold the coordinates of all nodes exactly otherwise. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;

@@ -32,9 +32,9 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Lists components of the attributes that are finite at all fluid particles. of_surface: lists only
- * components that vary; else, for samples, lists all. not_finite: [attribute_count]; writes what
- * mcor_surface.attribute_not_finite tells. */
+/* Lists the components of attributes that are finite at all fluid particles. If of_surface is set,
+ * lists only components that vary; if not, the list is for mcor_samples. not_finite
+ * [attribute_count] becomes what mcor_surface.attribute_not_finite tells. */
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {

@@ -327,8 +327,8 @@ static mcor_status mcor_visit_cap_square(
 /* The most steps in which a cut moves. They suffice, because every fourth step halves the
  * bracket. */
 #define MCOR_PLACE_STEPS 100
-/* A cut stays where it is if the magnitude of its margin is below this: a few units of rounding in
- * single precision. */
+/* A cut stays where it is if its trim margin is smaller in magnitude than this number, which is a
+ * few units of rounding in single precision. */
 #define MCOR_PLACE_ROOT 1e-6
 
 /* Moves a cut within its bracket, unless its margin is 0 up to rounding. If an end of the bracket
@@ -383,7 +383,7 @@ mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
 
 /* ---- All of it ---- */
 
-/* Enters the surface's vertices on the sides into tables by lattice edge. */
+/* Lists the surface's vertices that lie on the sides, in tables by the vertices' lattice edges. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
 {
   const mcor_context* context = job->context;

@@ -68,8 +68,8 @@ static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
   return (const cl_int*)d->node + 4 * v;
 }
 
-/* Returns the boundary flag of vertex v. On a lattice edge, the flag is 4 if a cell around the edge
- * is unused, so that the vertex is on the border that the node threshold leaves; else 0. */
+/* Returns the boundary flag of vertex v. For a vertex on a lattice edge, the flag is 4 if the node
+ * threshold discarded a cell around the edge, else 0. */
 static int mcor_flag_of(const mcor_download* d, int64_t v)
 {
   return v < d->context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
@@ -339,8 +339,8 @@ static mcor_status mcor_evaluate_outputs(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Begins to evaluate at the vertices what the caller wants, and to read the vertices. Meanwhile the
- * host delivers triangles. */
+/* Makes the device evaluate the outputs that the caller wants at vertices, and begins to read the
+ * vertices. Meanwhile the host delivers triangles. */
 static mcor_status mcor_begin_vertices(mcor_download* d)
 {
   if (d->view_count > 0)

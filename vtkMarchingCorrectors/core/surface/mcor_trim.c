@@ -87,7 +87,8 @@ bool mcor_is_trimmed(const mcor_context* context)
   return context->run.options->field != MCOR_WEIGHT_SUM || mcor_ends_at_solids(context);
 }
 
-/* Evaluates mcor_trim_quantity, unless it is the weight, which is already known. */
+/* Computes, at the vertices on lattice edges, the quantity that decides about trimming
+ * (mcor_trim_quantity). If this quantity is the weight, it is known already. */
 static mcor_status mcor_evaluate_margins(mcor_context* context)
 {
   const mcor_mesh* mesh = &context->mesh;

@@ -71,10 +71,10 @@ extern "C"
   } mcor_message;
   void mcor_free_message(mcor_message* message);
 
-  /* Writes an interface's word for a slot, such as "--cube-size", into word [size]. value: what
-   * stands behind the name in the slot, or "". Returns 0 if there is no word, else another number.
-   * If it returns 0, mcor_member_word gives the word; a slot that names no member stays as it is,
-   * with its braces. */
+  /* A function that writes an interface's word for a slot into word [size], such as "--cube-size"
+   * for {cube_size}. value: what stands behind the name in the slot, or "". Returns 0 if the
+   * interface has no word, else another number. After 0, mcor_member_word gives the word; a slot
+   * that names no member stays as it is, with its braces. */
   typedef int (*mcor_word)(
     void* user, const char* name, const char* value, char* word, size_t size);
   /* mcor_member_word gives the words of C, "cube_size" and "precision=double"; mcor_label_word

@@ -88,7 +88,7 @@ bool mcor_contains(const char* text, const char* part);
 /* Writes to out [size] the text with words in place of its slots, such as {cube_size}. A longer
  * result is cut. Returns the length of the whole result, as snprintf does. */
 size_t mcor_fill_text(const char* text, mcor_word word, void* user, char* out, size_t size);
-/* Bytes for the word that fills a slot, with the final 0; a longer word is cut. */
+/* Bytes for a word that mcor_fill_text fills in, with the final 0. A longer word is cut. */
 #define MCOR_WORD_SIZE 256
 double mcor_seconds(void);
 /* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. In arrays of two, the first element is
@@ -137,8 +137,8 @@ static inline double mcor_real_of(const mcor_context* context, double value)
   return context->cl.real_size == sizeof(float) ? (double)(float)value : value;
 }
 
-/* The most elements that kernels count. Even rounded up to whole work-groups or batches, this
- * number is an int. */
+/* The largest number of elements that kernels count. It is an int even if it is rounded up to whole
+ * work-groups or batches. */
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
 /* The most lattice nodes along an axis. Fixed point of single precision then resolves 2^-9
  * cubes. */
@@ -329,7 +329,7 @@ bool mcor_has_solids(const mcor_input* input, const mcor_options* options);
 int mcor_list_programs(const mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool has_solids);
 
-/* The phases. */
+/* The phases of a call, and functions that several phases use. */
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input);
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,

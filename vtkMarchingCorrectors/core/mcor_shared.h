@@ -45,7 +45,7 @@ typedef struct mcor_level
 /* Bit that is added to the key of a triangle's cell if the cell is outside the box, in the ring of
  * cells around the box. */
 #define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
-/* Bit that is added, too, if another rank owns the cell. */
+/* Bit that is added to the key, besides MCOR_RING_CELL, if another rank owns the cell. */
 #define MCOR_OTHERS_CELL ((MCOR_TYPE(ulong))1 << 62)
 /* This bit makes the key of a cap's square greater than the key of any owned cell. */
 #define MCOR_CAP_SQUARE ((MCOR_TYPE(ulong))1 << 62)
@@ -56,7 +56,8 @@ typedef struct mcor_level
 
 /* MCOR_INSERTION_OF: one call of mcor_grid_insert sorts the particles of successive cells, at most
  * this number of particles. The particles of a cell that has more are sorted by a heap.
- * MCOR_USUAL_IN_CELL: the least value of most_in_cell in mcor_grid. */
+ * MCOR_USUAL_IN_CELL: cells with up to this number of particles do not raise most_in_cell of
+ * mcor_grid. */
 #define MCOR_INSERTION_OF(lanes) ((lanes) == 1 ? 64 : 256)
 #define MCOR_USUAL_IN_CELL 32
 

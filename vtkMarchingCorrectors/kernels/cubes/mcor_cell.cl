@@ -65,11 +65,11 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
   q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
 }
 
-/* A brick has MCOR_EDGE_MASKS masks of edges. Mask `axis` has the crossed edges along the axis;
- * mask 3 + axis the crossed edges next to a cell that is not used (see mcor_march.cl); mask 6 +
- * axis the pinched edges. Only two cells around a pinched edge are used, and they lie opposite to
- * each other. Each of these two cells has a vertex of its own on the edge. The second vertex is for
- * the cell at lower coordinates along the first of the other two axes. */
+/* A brick has MCOR_EDGE_MASKS masks of edges. Mask `axis` has the crossed edges along the axis.
+ * Mask 3 + axis has those of them that are next to a cell that is not used (see mcor_march.cl).
+ * Mask 6 + axis has the pinched edges: only two of the four cells around such an edge are used, and
+ * these two are opposite to each other. Each of the two has a vertex of its own on the edge. The
+ * second vertex is for the cell that is lower along the first of the other two axes. */
 
 /* Number of nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125

@@ -233,8 +233,8 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   {
     number += (int)((e[a] >> edge.node & 1) + (e[6 + a] >> edge.node & 1));
   }
-  /* A pinched edge has two vertices. The second is for the cell at lower coordinates than the edge
-   * along the first of the other two axes. */
+  /* A pinched edge has two vertices, one for each used cell. The second vertex is for the cell that
+   * is lower along the first of the two axes across the edge, see mcor_cell.cl. */
   const bool below = (edge.quadrants & 5) == 0;
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }

@@ -22,9 +22,9 @@ uint mcor_row_of(__global const uint* bits, int row)
   return bits[row >> 2] >> 8 * (row & 3) & 0xff;
 }
 
-/* Returns the bits of bricks x = -1 to 8 as bits 0 to 9: a row's 8 bricks in a block, and one brick
- * of the block on either side. blocks: see mcor_seed_blocks; row: the number of the row's first
- * brick in the block. */
+/* Returns 10 bits, for the bricks x = -1 to 8: the 8 bricks of a row in a block, and the next brick
+ * on either side, which is in another block. blocks: see mcor_seed_blocks; row: the number of the
+ * row's first brick in the block. */
 uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 {
   const int word = row >> 5, at = row & 31;

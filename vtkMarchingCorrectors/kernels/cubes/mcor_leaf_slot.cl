@@ -77,9 +77,9 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   }
 }
 
-/* Crossed cells are valid at all corners and have corners on both sides of the iso value. Marks the
- * slots whose node values the crossed cells of a leaf need. Returns whether the leaf has crossed
- * cells. No finer leaves may be around the leaf. */
+/* Marks the slots whose node values a leaf's crossed cells need. A crossed cell is valid at all
+ * corners, and has corners on both sides of the iso value. Returns whether the leaf has crossed
+ * cells. Must not be called for a leaf beside finer leaves. */
 bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above,
   __global const ulong* valid, __global ulong* need)
 {

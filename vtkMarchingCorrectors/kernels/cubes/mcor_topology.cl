@@ -148,9 +148,9 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   counts[slot] = 2 * (int)popcount(cells);
 }
 
-/* Returns the root t of xyz * t + q = p, or -1 if t is not between -1 and 1. If p - q would cancel,
- * computes t from the other root of (xyz * t + q)^2 = p^2, and from the product n / (a * xyz) of
- * both roots. */
+/* Returns the root t of xyz * t + q = p, or -1 if t is not between -1 and 1. t is one of the two
+ * roots of (xyz * t + q)^2 = p^2. Their product is n / (a * xyz), see mcor_topology_product. If p -
+ * q would cancel, computes t from the other root and this product. */
 real mcor_topology_root(real p, real q, real xyz, real n, real a)
 {
   const real above = p * q > 0 ? n : p - q, below = p * q > 0 ? -a * (p + q) : xyz;
@@ -158,7 +158,7 @@ real mcor_topology_root(real p, real q, real xyz, real n, real a)
 }
 
 /* Returns the parameter n of mcor_topology_root: (product of both roots) * a * xyz, with a and xyz
- * as in mcor_topology_root. */
+ * of mcor_topology_find_saddles. */
 real mcor_topology_product(real x, real y, real z, real yz, real xz, real xy, real xyz)
 {
   return yz * (x * yz - y * xz - z * xy) + y * z * xyz;

@@ -22,7 +22,8 @@
  * all are below it, or all have too low weights (MCOR_VOID). */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
-/* A block or brick is an int4: x, y, z count blocks or bricks of its level, w is the level. */
+/* A block or brick is an int4. x, y, z: its position in blocks or bricks of its level; w: its
+ * level. */
 
 ulong mcor_block_key(__global const mcor_rung* rungs, int4 block)
 {
@@ -106,8 +107,9 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int4 brick)
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
 
-/* With several levels, bits say which bricks are leaves, and which leaves are beside other levels,
- * see mcor_leaf_compare. */
+/* has_leaves: whether cubes have several levels. Then `leaves` has a bit for each brick that is a
+ * leaf, and `beside` for each leaf that is next to leaves of other levels, see
+ * mcor_leaf_compare. */
 #define MCOR_TREE_PARAMS                                                                           \
   const int has_leaves, __global const uint *leaves, __global const uint *beside
 #define MCOR_TREE_ARGS has_leaves, leaves, beside

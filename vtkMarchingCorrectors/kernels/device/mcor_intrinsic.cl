@@ -75,8 +75,8 @@ void mcor_interleave4(realv a, realv b, realv c, realv d, real* to)
 #elif MCOR_LANES == 8 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX2__) && defined(__BMI2__) && \
   __has_builtin(__builtin_ia32_movmskps256) && __has_builtin(__builtin_ia32_permvarsf256) &&       \
   __has_builtin(__builtin_ia32_pdep_di) && __has_builtin(__builtin_ia32_pext_di)
-/* The vector unit has an instruction that permutes lanes. `kept` has the numbers of the kept lanes
- * first. */
+/* The vector unit has an instruction that permutes lanes. kept: the numbers of the `count` lanes
+ * that are kept, then zeros. */
 typedef struct
 {
   int8 kept;

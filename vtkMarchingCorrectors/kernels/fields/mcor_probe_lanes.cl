@@ -107,9 +107,9 @@ void mcor_cluster_from(
 }
 
 /* Adds the weights of the listed particles at a group's points to *weight_sum, and the values of
- * the first `step` arrays, times the weights, to `sums`. One loop adds to all sums, because the
- * additions to one sum must wait for each other. Each call passes a constant as `step`. keep:
- * whether to write the weights to `weight`. */
+ * the first `step` arrays, times the weights, to `sums`. One loop adds to all sums: while one sum
+ * waits for its last addition, the loop adds to other sums. Each call passes a constant as `step`.
+ * keep: whether to write the weights to `weight`. */
 __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   const mcor_points* points, const realv at[3], const mcor_cluster_values* values, const int* list,
   int count, const int step, bool keep, realv* weight, realv* weight_sum, realv* sums)

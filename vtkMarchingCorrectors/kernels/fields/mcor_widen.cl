@@ -50,9 +50,10 @@ __kernel void mcor_widen_sizes(const int count, const int plane, __global const 
   size[i] = weight[i] * h * h * (plane ? (real)1 : h);
 }
 
-/* Fits the query's box to the particles of lanes `from` and following, and its radius to `support`
- * times their largest smoothing length. Stops before a particle that is far from the first, or that
- * has a lower x than its predecessor, as at the end of a row. Returns the lane of that particle. */
+/* Fits the query's box to the particles from lane `from` on. Stops before a particle that is far
+ * from the first, or that has a lower x than the particle before it, as at the end of a row. Sets
+ * the query's radius to `support` times the largest smoothing length of these particles. Returns
+ * the lane behind the last of them. */
 int mcor_widen_place(
   const mcor_grid* grid, mcor_query* query, const mcor_widen_at* at, int from, real support)
 {
@@ -297,10 +298,11 @@ bool mcor_widen_is_plain(
 }
 
 /* One work-item = MCOR_LANES sorted particles. Reads factors, and from `limited` the weight sum
- * that each particle needs. Writes new factors to `limited`. A factor above 1 falls to the mean
- * factor at the particle, if the mean is lower, but not below 1. A factor of 1 becomes 1 + share *
- * (mean - 1); the share is above 0 only for a particle in a corner. The mean is made as the widest
- * factor less the mean of (widest - factor), so it is exact if all factors are the widest. */
+ * that each particle needs. Writes new factors to `limited`. If the mean factor around a particle
+ * is lower than the particle's factor, the factor becomes the mean, but at least 1. A factor of 1
+ * becomes 1 + share * (mean - 1), where `share` is above 0 only for a particle in a corner. The
+ * mean is computed as `widest` less the mean of (widest - factor), so it is exact if all factors
+ * are `widest`. */
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real iso,
   const real margin, __global const real* factor, __global real* limited)
 {

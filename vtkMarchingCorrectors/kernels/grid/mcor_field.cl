@@ -16,7 +16,7 @@ realv mcor_rsqrt_guess(realv x)
   return MCOR_AS_REALV((fixv)0x5f375a86 - (MCOR_AS_FIXV(x) >> 1));
 }
 
-/* p(e) */
+/* Returns p(e), the polynomial in the comment above. */
 realv mcor_rsqrt_series(realv e)
 {
   const realv p = MCOR_FMA(e, (real)0.2740815f, (real)0.31393823f);
@@ -108,8 +108,8 @@ realv mcor_weight_gradient(
   along[2] = sign(d[2]) * MCOR_DW(q[2]) * w[0] * w[1] * inv_h;
   return w[0] * w[1] * w[2];
 #else
-  /* inv_r is finite at r = 0, so the gradient is 0 there. The quadratic kernel's slope is not 0 at
-   * 0; its gradient is 0 there by definition. */
+  /* At r = 0, inv_r is finite and d is 0, so the gradient is 0. The quadratic kernel's slope is not
+   * 0 there, but its gradient is defined as 0. */
   const realv per_r = length->inv_r * inv_h, q = length->r2 * per_r;
   *slope = MCOR_DW(q) * per_r;
   along[0] = d[0];

@@ -117,7 +117,8 @@ void mcor_tile_fill(const mcor_grid* grid, mcor_query* query, mcor_tile* tile)
   const real unit = grid->unit;
   const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
   const mcor_span box = query->box;
-  /* own: a particle counts within a share of its own support; else within the query's radius. */
+  /* own: a particle counts if its distance to the box is less than a share of its own support; if
+   * not `own`, less than the query's radius. */
   const bool own = query->radius < 0;
   const realv reach = own ? -query->radius : (real)1;
   const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
@@ -334,7 +335,7 @@ void mcor_tile_values(const mcor_tile* tile, __global const real* attribute, rea
   }
 }
 
-/* Loads an attribute's values at the particles of a reach; MCOR_VALUE reads them. */
+/* Loads an attribute's values at the particles of an mcor_reach. MCOR_VALUE reads these values. */
 #if MCOR_PARTS == 1
 #define MCOR_VALUE(values, i) (values)[i]
 void mcor_attribute_load(const mcor_reach* reach, __global const real* attribute, real* values)
@@ -369,9 +370,9 @@ void mcor_values_load(
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
 /* Adds w_i A_i, for the particles i of a reach, to `step` sums, one for each attribute A. Only the
- * first `count` sums have an attribute. One loop adds to all sums, because the additions to one sum
- * must wait for each other. weight: w_i in each lane; if `make`, computes w_i, and adds it to
- * *weight_sum. Each call passes constants as `step` and `make`. */
+ * first `count` sums have an attribute. One loop adds to all sums: while one sum waits for its last
+ * addition, the loop adds to other sums. weight: w_i in each lane; if `make` is set, computes w_i,
+ * and adds it to *weight_sum. Each call passes constants as `step` and `make`. */
 #define MCOR_ATTRIBUTE_STEP 4
 __attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,
   const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,

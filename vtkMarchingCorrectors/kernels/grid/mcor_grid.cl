@@ -93,7 +93,7 @@ void mcor_grid_heap_sort(
   }
 }
 
-/* Most elements of an insertion sort. */
+/* The largest number of particles that are sorted by insertion. */
 #define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
 
 #if MCOR_LANES > 1
@@ -250,7 +250,7 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   out[(long)out_row * count + i] = in[order[i]];
 }
 
-/* MCOR_SAME: whether sorted particles i and j differ at most in their scalar. Mostly x decides. */
+/* MCOR_SAME: whether sorted particles i and j differ at most in their scalar. Compares x first. */
 #define MCOR_COINCIDENT_PARAMS                                                                     \
   __global const fix *px, __global const fix *py, __global const fix *pz,                          \
     __global const real *inv_h, __global const real *weight, __global const real *trim_weight
@@ -409,10 +409,10 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int 
  * with negative lobes can cause, would make the volume huge or negative. */
 #define MCOR_LEAST_DENSITY ((real)0.01f)
 
-/* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled
- * h)^3. As V = m / (sum m W), norm and unscaled h^3 cancel. Writes to `without` the lowest input
- * number of a particle whose density is too low. Particles whose support stays clear of the box in
- * which the field is evaluated (low, high; in cubes) are not reported, because they may lack
+/* One work-item = one sorted particle. Computes the weight V norm / (h_scale h)^3 from the mass m
+ * and the density. V = m / (sum m W), so norm and h^3 cancel. Writes to `without` the lowest input
+ * number of a particle whose density is too low. Does not report particles whose support stays
+ * clear of the box in which the field is evaluated (low, high; in cubes), because they may lack
  * neighbours. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const real* density, const real unit, __global const fix* px, __global const fix* py,

@@ -61,7 +61,7 @@ bool mcor_plane_crosses(const mcor_plane_ring* ring, uint above, int i)
   return ((above >> ring->node[i] ^ above >> ring->node[(i + 1) % ring->count]) & 1) != 0;
 }
 
-/* Returns side i as an edge's number (slot) of mcor_adaptive_cell.h. */
+/* Returns the number of the cell edge, or half edge, that is side i, see mcor_adaptive_slot. */
 int mcor_plane_side(const mcor_plane_ring* ring, int i)
 {
   return mcor_adaptive_slot(ring->node[i], ring->node[(i + 1) % ring->count]);

@@ -57,8 +57,8 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
 #endif
 }
 
-/* Elements of M, mostly about 1, count as 0 below this, so that no product is a denormal number,
- * which some devices do not have. */
+/* An element of M beside the diagonal counts as 0 if it is smaller in magnitude. So no product is a
+ * denormal number, which some devices do not have. (M is about the identity.) */
 #define MCOR_EIGEN_LEAST (MCOR_DOUBLE ? (real)1e-100 : (real)1e-9f)
 
 /* Makes Jacobi's rotation of axes p and q, which turns element pq into 0. r is the third axis. vp,

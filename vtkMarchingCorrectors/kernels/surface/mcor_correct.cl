@@ -5,7 +5,7 @@
  * at a time. A vertex that is not on an edge, such as a merged vertex of a compact contour, moves
  * along a line instead: one cube long, in the gradient's direction at the vertex's start. */
 
-/* Returns x / y, or -1 if y is 0. A step of this length leaves every bracket (interval that has the
+/* Returns x / y, or -1 if y is 0. A step of length 1 leaves every bracket (interval that has the
  * root). No kernel makes an infinite value or a NaN, because compilers that relax arithmetic may
  * treat them wrongly. */
 realv mcor_correct_ratio(realv x, realv y)

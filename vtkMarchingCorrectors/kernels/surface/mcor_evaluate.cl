@@ -25,8 +25,8 @@ void mcor_quantity_add(realv m, realv k, realv slope, const realv along[3], mcor
   sum->gradient[2] = MCOR_FMA(ms, along[2], sum->gradient[2]);
 }
 
-/* Finds the field minus the iso value, and the weights, at all points. iso: the iso value; for a
- * Shepard mean, less A0, the shift of the particles' values. */
+/* Finds the field minus the iso value, and the weights, at all points. iso: the iso value. For a
+ * Shepard mean, the shift A0 is subtracted from it, and from all particles' values. */
 void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, real iso, mcor_field_at* at)
 {

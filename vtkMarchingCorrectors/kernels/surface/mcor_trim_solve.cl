@@ -16,10 +16,10 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
 
 /* One work-item = one vertex. Writes the number that decides whether the vertex is trimmed: the
  * vertex is inside if this number is above a limit. If fluid_share <= 0, the number is `quantity`
- * and the limit is `threshold`. Else the limit is 0, and the number is the smaller of (quantity -
- * threshold) and (F - fluid_share * weight), where F is the fluid's own weight; if the field is the
- * weight sum, the number is the second of these. A vertex without a mean gets at most the limit,
- * and so is outside. */
+ * and the limit is `threshold`. Else the limit is 0. Then, if the field is the weight sum, the
+ * number is F - fluid_share * weight, where F is the fluid's own weight; if not, it is the smaller
+ * of this difference and quantity - threshold. A vertex without a mean gets at most the limit, and
+ * so is outside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -83,7 +83,8 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   gradient[vertex_count + i] = (real4)(-s * along.x, -s * along.y, -s * along.z, lacks);
 }
 
-/* Most that a cut vertex may move, in cubes: from the linear cut, and in one iteration. */
+/* How far a cut vertex may move, in cubes: from its linear cut along each axis; in one
+ * iteration. */
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
@@ -199,9 +200,9 @@ fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
   return tangent;
 }
 
-/* Some points have no Shepard mean at their linear cut. Moves these points towards the end of the
- * edge that is inside, until they have a mean. linear: the points that may move. Returns which
- * points were moved. */
+/* Some points have no Shepard mean at their linear cut. Moves these points towards the inner end of
+ * their edge (the end that is not trimmed), until they have a mean. linear: the points that may
+ * move. Returns which points were moved. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, const mcor_trim_limits* limits,
   fixv linear, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -273,10 +274,10 @@ void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const 
   mcor_evaluate(grid, query, reach, points, iso, at);
 }
 
-/* Moves a group of points to where field = iso and weight = threshold. A point for which this fails
- * nearby goes back to its start. If the start has no Shepard mean, the point moves on to where the
- * mean exists, and seeks once more from this place: where the weight is nearly 0, the field has no
- * slope to follow. Returns the points that failed in the end. */
+/* Moves a group of points to where field = iso and weight = threshold. If this fails near a point's
+ * start, the point goes back to the start. If the start has no Shepard mean, the weight is nearly
+ * 0, and the field has no slope to follow: then the point moves to where the mean exists, and the
+ * search begins once more from there. Returns the points that failed in the end. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, mcor_trim_limits* limits,
   mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {

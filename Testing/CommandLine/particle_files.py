@@ -212,8 +212,7 @@ def write_pieces(path, names):
 
 
 def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
-    """Writes a grid of points without arrays, as a .vti file, or as a .vtk file, whose `extent` is the number of points
-    along each axis."""
+    """Writes a grid of points without arrays. extent: for a .vti file its extent, for a .vtk file the number of points along each axis."""
     path.write_text(
         f'<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData WholeExtent="{extent}" '
         f'Origin="{origin}" Spacing="{spacing}"><Piece Extent="{extent}"></Piece></ImageData></VTKFile>'

@@ -104,7 +104,8 @@ class Film(CommandLineTest):
         self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "--ids needs --times or --fps; add one, or leave out --ids")
 
     def test_ranges_of_times(self):
-        """A range in --times, BEGIN:END:STEP, means the times from BEGIN to END. The number of frames by --fps follows from the times and --slow."""
+        """--times BEGIN:END:STEP means times from BEGIN to END, STEP apart. With --fps, the times and --slow decide the number of
+        frames."""
         paths = self.write_steps(3)
         film = [*paths, self.film, *FREE, "--quiet", "--time-step", "0.1"]
         for options, times in ((["--times", "0:0.2:0.05"], [0, 0.05, 0.1, 0.15, 0.2]), (["--times", "0.2,0:0.1:0.04"], [0, 0.04, 0.08, 0.2]),

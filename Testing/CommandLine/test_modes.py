@@ -68,7 +68,7 @@ TRIALS = {
     "--up": Trial("x", PICTURE), "--view": Trial("1,2,3", PICTURE), "--device": Trial("nonesuch"), "--threads": Trial("1"),
     "--memory-limit": Trial("1", {"--cube-size": "0.01"})}
 FILM_PICTURE = {"--screenshot": "p_%04d.png"}
-# Trials of options in modes that need another trial than TRIALS has.
+# Trials for each (option, mode) in which the option's trial in TRIALS would not work.
 OTHER_TRIALS = {
     ("--gauge-grid", "gauge"): TRIALS["--gauge-grid"]._replace(output="out.vti", inputs=["step_0.vtp"]),
     ("--derive", "project"): Trial("Velocity", {}, {"--scalar": "Divergence"}),
@@ -112,8 +112,9 @@ def parameters_of(report):
 
 
 def is_shown(option, value, report, base):
-    """Returns whether the report shows the option: a parameter with a name like the option's has changed, to the option's value if this is
-    a number or a word. For a number, a changed array name counts, too. Returns True if the reports have no such parameter, or are equal."""
+    """Returns whether the report shows the option. A parameter with a name like the option's must have changed; if the option's value is a
+    number or a word, to this value. For a number, a changed array name counts, too. Returns True if there is no such parameter, or if the
+    reports are equal."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
     mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}

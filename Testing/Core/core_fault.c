@@ -45,7 +45,7 @@ typedef struct real_driver
 
 static real_driver drivers[16];
 
-/* Returns the own functions of the driver that made an object. */
+/* Returns the real functions of the driver that made an object. */
 static const cl_icd_dispatch* real(const void* object)
 {
   const real_driver* driver = drivers;

@@ -347,8 +347,8 @@ void core_extend_program(mcor_context* context, const char* source)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  /* Kernels that call functions for masks of cells, or for topology by the field, need the sources
-   * of the lattice's programs; all others need the sources of the field's programs. */
+  /* A kernel that calls mcor_topology_* or mcor_cell_* needs the sources of the lattice's programs. Any other kernel
+   * needs the sources of the field's programs. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
   const cl_uint count =
     (cl_uint)mcor_program_sources(cl, of_lattice ? MCOR_PARTS_LATTICE : MCOR_PARTS_FIELD, sources);

@@ -68,7 +68,7 @@ bool core_told(const mcor_context* context, const char* words);
       mcor_status_name(core_status_), mcor_last_error(context));                                   \
   } while (0)
 
-/* Stands before the declaration of an object, which is freed at the end of its block. Later objects are freed first. */
+/* Before a declaration: the object is freed at the end of its block. Objects declared later are freed first. */
 #define CORE_OWNED(free_it) __attribute__((cleanup(free_it)))
 #define CORE_SET CORE_OWNED(particle_set_free) particle_set
 #define CORE_SURFACE CORE_OWNED(mcor_free_surface) mcor_surface
@@ -144,7 +144,7 @@ void core_check_flags(const mcor_surface* surface);
 /* CORE_HASH_OF_NOTHING: the hash of no bytes. core_hash_bytes adds bytes to a hash, unless data is NULL. */
 #define CORE_HASH_OF_NOTHING 0xCBF29CE484222325u
 uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
-/* Hashes points, triangles, lines and optional arrays (of an attribute, only as many numbers as points). */
+/* Hashes points, triangles, lines and optional arrays; of an attribute, only as many numbers as there are points. */
 uint64_t core_hash(const mcor_surface* surface);
 
 /* Compiles the kernels in `source` together with the library's sources, so that mcor_launch can

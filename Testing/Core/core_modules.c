@@ -40,7 +40,7 @@ static void modules_print(
   fflush(stdout);
 }
 
-/* Collects, part by part, the hash of a result that is not a surface. */
+/* Hashes a result that is not a surface, one part after the other. */
 typedef struct modules_hash
 {
   const char* name;

@@ -7,7 +7,7 @@
 
 #include "core_fixture.h"
 
-/* Collects the triangles of several surfaces as bytes: the triangle's place in the order, if it has a key, then all
+/* The triangles of several surfaces, as records of bytes. A record has the triangle's key, if it has one, then all
  * arrays of its three corners. A piece of a line is kept as a triangle that has the second end twice. */
 typedef struct core_triangles
 {
@@ -46,7 +46,7 @@ void core_check_cuts(
 void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
   const mcor_options* options, const core_cut* cuts, int count);
 
-/* Asks for keys and for all arrays of points except the boundary eigenvalue and curvatures. */
+/* Makes calls write keys, and all arrays of points except the boundary eigenvalue and curvatures. */
 void core_ask_for_all(mcor_options* options);
 
 /* Appends particle i of the set to `near` unless the particle is `margin` or farther from the box along an axis. */

@@ -315,8 +315,8 @@ static void test_statistics(void** state)
   assert_true(s->device[0] && s->platform[0]);
 }
 
-/* The number of lanes follows from the width of the registers that the device's compiler uses, not from the width that
- * the device reports. */
+/* cl.lanes, the width of vectors in kernels, follows from the registers that the device's compiler uses, not from the
+ * width that the device reports. */
 static void test_lanes(void** state)
 {
   mcor_context* context = *state;

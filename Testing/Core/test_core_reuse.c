@@ -227,7 +227,7 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(ARRAYS, iso_value_array), AT(ARRAYS, curvature), AT(ARRAYS, nearest_particle),
   AT(ARRAYS, triangle_normals) };
 
-/* Hashes the surface and its statistics of cells. */
+/* Hashes the surface, and its numbers of seed cells and used cells. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)
 {
   CORE_SURFACE surface = core_extract(context, &call->input, &call->options);

@@ -216,7 +216,8 @@ def cells_of(surface, ids=None):
 
 
 def part_of(surface):
-    """Returns the names of the ids, the arrays, the numbers of the cells, and the cells of a rank's surface; None if it has no points."""
+    """Returns what a rank's surface has, or None if it has no points: the names of its arrays of ids, its point arrays, cell ids and
+    cells."""
     if surface.GetNumberOfPoints() == 0:
         return None
     names = [data.GetGlobalIds() and data.GetGlobalIds().GetName() for data in (surface.GetPointData(), surface.GetCellData())]

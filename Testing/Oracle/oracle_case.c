@@ -96,8 +96,8 @@ static void case_print(const case_run* run)
 static void case_check_mesh(case_run* run)
 {
   const oracle_comparison* c = &run->comparison;
-  /* In double precision triangles at nodes may be only 1e-9 edges wide. Trimming may cut such slivers near their tips,
-   * and what remains is still wider than rounding. */
+  /* In double precision, triangles at nodes may be only 1e-9 edges wide. If trimming cuts such slivers near their tips,
+   * narrower triangles remain, which are still wider than rounding errors. */
   const int slivers =
     run->options.precision == MCOR_FLOAT64 && c->trim_vertices > 0 && run->mesh.slimmest > 1e-14;
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
@@ -137,13 +137,13 @@ static void case_check_edges(case_run* run, int pairs)
   CASE_EXPECT(run, c->doubled == 0, c->doubled);
   CASE_EXPECT(run, c->extra == 0, c->extra, c->first);
   CASE_EXPECT(run, c->segments_missing == 0, c->segments_missing, c->first);
-  /* Rounding is the only excuse, so excuses must be rare: a few in ten thousand. */
+  /* Only rounding excuses a missing or extra vertex, so excuses must be rare: a few in ten thousand edges. */
   CASE_EXPECT(run, run->at->at_iso || pairs || c->excused + c->rounding <= 2 + c->edges / 2000,
     c->excused + c->rounding);
   CASE_EXPECT(run, run->at->rough || c->noisy == 0, c->noisy);
   if (pairs)
   {
-    /* Seeds by pairs, as in the paper, may miss whole components of the surface, but not parts of one. */
+    /* MCOR_PAIRS, the paper's way, may miss whole components of the surface, but not parts of one. */
     CASE_EXPECT(run, c->components_partial == 0, c->components_partial, c->first);
   }
   else
@@ -167,13 +167,13 @@ static void case_check_accuracy(case_run* run, int trimmed)
   CASE_EXPECT(run, c->trim_weight_error <= 1e-4, c->trim_weight_error, c->first);
   /* Kernels with negative lobes leave gaps, so trimming may cut steep parts of the surface at low weight. */
   CASE_EXPECT(run, c->trim_residual <= (run->at->rough ? 4.0 : 1.0) * residual, c->trim_residual);
-  /* No cut would be exact if the gradient of the eigenvalue were wrong. */
+  /* If the gradient of the eigenvalue were wrong, trimming would place no vertex exactly. */
   CASE_EXPECT(run,
     run->at->rough || run->options.boundary_detection != MCOR_BOUNDARY_EIGENVALUE ||
       c->trim_linear <= 2 + c->trim_vertices / 25,
     c->trim_linear, c->trim_vertices);
-  /* Few cuts may stay linear where the iso surface and the threshold's surface meet nearby. With negative lobes more
-   * cuts stay linear, because the weight has many extrema. */
+  /* Trimming may place a few vertices linearly, though an exact place lies within a cube. With negative lobes there are
+   * more such vertices, because the weight has many extrema. */
   CASE_EXPECT(run,
     c->trim_avoidable <=
       4 + c->trim_vertices / (run->options.sph_kernel == MCOR_M_PRIME_4 ? 12 : 50),

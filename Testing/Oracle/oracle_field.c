@@ -81,8 +81,8 @@ double oracle_smallest_h(const particle_set* particles)
   return smallest;
 }
 
-/* ---- kd-tree: a node has the particles order[begin] to order[end - 1], and each of its two children half of these; a
- * leaf has at most ORACLE_LEAF_SIZE ---- */
+/* ---- kd-tree: a node has the particles order[begin] to order[end - 1]; each of its two children has half of the
+ * node's particles; a leaf has at most ORACLE_LEAF_SIZE particles ---- */
 
 enum
 {

@@ -53,7 +53,7 @@ extern "C"
     int level;
   } lattice_brick;
 
-  /* A cell with nodes on both sides of iso, none of which is certainly invalid. */
+  /* A cell with nodes on both sides of iso. None of its nodes is certainly invalid. */
   typedef struct lattice_cell
   {
     int64_t at[3];
@@ -97,8 +97,8 @@ extern "C"
     lattice_cell* cells;
     lattice_edge* edges;
     lattice_segment* segments; /* of valid cells, without loops of two */
-    /* Pairs of edges on a face, the lower number first. doubts: pairs in cells that rounding may make valid or not.
-     * either: pairs that rounding may join or not. Their values are the numbers of valid cells at the face. */
+    /* From a pair of crossed edges of a face (the lower number first) to the number of valid cells at the face. doubts:
+     * pairs of a cell that rounding may make valid or not. either: pairs that rounding may join or not. */
     oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;

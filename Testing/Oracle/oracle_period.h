@@ -41,8 +41,8 @@ extern "C"
     int64_t different; /* points that are not, bit for bit, equal to their partner a period away */
   } oracle_seam;
 
-  /* Joins points of the surface that are a period apart, at opposite sides, and returns what does
-   * not match. edge: of the cubes, along x, y, z. */
+  /* Joins points of the surface that are a period apart, at opposite sides. Returns what does not match. edge: the
+   * edges of cubes along x, y, z. */
   oracle_seam oracle_check_seam(const mcor_options* options, const double edge[3],
     const mcor_surface* surface, const mesh_report* mesh);
 

@@ -106,8 +106,8 @@ static void run_variant(
   particle_set_free(&set);
 }
 
-/* ---- every combination of kernel, field and cube factor: for the first kernel with all scales of h, for other kernels
- * with one of the scales in turn ---- */
+/* ---- every combination of kernel, field and cube factor: the first kernel with all scales of h, the other kernels
+ * each time with the next scale ---- */
 
 static void run_matrix(oracle_suite* suite)
 {
@@ -188,8 +188,8 @@ static const variant set_variants[] = {
   { .set = "variable_128", .field = MCOR_WEIGHT_SUM, .cube_size = 0.03 },
   { .set = "single", .field = MCOR_WEIGHT_SUM, .has_euler = 1, .euler = 2 },
   { .set = "single", .field = MCOR_SUM, .has_iso = 1, .iso = 0.7 },
-  /* In a single particle's sum f and w are the same, so the iso value and the vertex threshold meet
-   * everywhere. */
+  /* For a single particle, the sum f equals the weight w, so the surfaces of iso value and vertex threshold
+   * coincide. */
   { .set = "single", .field = MCOR_SUM, .rough = 1, .at_iso = 1, .suffix = "/tangent" },
   { .set = "coincident" },
   { .set = "coincident", .field = MCOR_SUM },

@@ -33,8 +33,8 @@ class TestApart(unittest.TestCase):
         cls.alone = surface_of(run(sphere())[0])
 
     def test_messages(self):
-        """Extracts blocks that are broken, good, an image, empty, missing, broken and nameless within a block, and good. The broken ones
-        and the image give a message each."""
+        """Extracts seven blocks: broken, good, an image, empty, missing, a group with a broken block that has no name, and good. Each
+        broken block and the image give a message."""
         blocks = blocks_of(broken(), timed(cube()), vtkImageData(), vtkPolyData(), None, blocks_of(broken()), cube())
         for i, name in ((0, "first"), (2, "picture")):
             blocks.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)

@@ -196,8 +196,8 @@ class TestKinds(unittest.TestCase):
         self.assertTrue(all(surface_of(apart.GetBlock(i)) == expected for i in range(2)))
 
     def make_mesh(self, particles, arrays):
-        """Makes hexahedra with points of their own, followed by the particles' vertices, if there are any. `arrays` ("cells" or "points")
-        says which of the two carry the particles' arrays."""
+        """Makes hexahedra with points of their own. If there are particles, a vertex cell for each of them follows. The particles' arrays
+        are arrays of cells or of points, as `arrays` ("cells" or "points") says."""
         places = numpy.array([(i & 1, i >> 1 & 1, i >> 2) for i in (0, 1, 3, 2, 4, 5, 7, 6)], float)
         grid, count = vtkUnstructuredGrid(), COUNT if particles else 0
         grid.SetPoints(particles_of(numpy.concatenate([places, points_of(particles)] if particles else [places])).GetPoints())

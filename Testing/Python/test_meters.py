@@ -280,8 +280,8 @@ class TestComponents(MeterTest):
         self.assertGreater(closed, 10)
 
     def pieces_of(self, shift, wanted, period, **settings):
-        """Returns the rows of the pieces of some particles, and the particles' places before they are moved by `shift`. `wanted` chooses
-        these places from a lattice of spacing 0.1 in the period 2."""
+        """Makes particles at places that `wanted` chooses from a lattice of spacing 0.1 in the period 2, and moves them by `shift`. Returns
+        the rows of their surface's pieces, and the places before the move."""
         way = numpy.remainder(lattice(20, 20, 20) + 1, 2) - 1
         chosen = way[wanted(way)]
         particles = self.particles(*(chosen + shift))
@@ -329,8 +329,8 @@ class TestComponents(MeterTest):
                 self.assertAlmostEqual(momentum / ball["mass"], ball["v" + axis], delta=1e-9)
 
     def test_drops_in_bubbles(self):
-        """A drop is in a bubble of a ball, or of a layer without an end. Each piece has all its particles, wherever the
-        sides of the period cut it."""
+        """A drop is in a bubble, and the bubble is in a ball or in an endless layer. Each piece has all its particles, wherever the sides
+        of the period cut it."""
         for is_layer in (False, True):
             def wanted(way, is_layer=is_layer):
                 r = numpy.linalg.norm(way, axis=1)

@@ -60,7 +60,7 @@ class TestReuse(unittest.TestCase):
                 before = new
 
     def test_widening(self):
-        """The factors and the search grid are kept for another iso value, but not for moved particles."""
+        """The widening factors and the search grid are kept for another iso value, but not for moved particles."""
         phases, data = [], cube()
         extract = sphere(data)
         extract.SetWidening(2)

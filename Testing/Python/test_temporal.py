@@ -204,7 +204,7 @@ class TestTemporal(unittest.TestCase):
         self.assertEqual(self.told(numbered, 0.5, TimeScale=0.1), [])
         self.assertLess(self.farthest(numbered.GetOutput(), 0.05), 3e-6)
         three = interpolator({0.0: rotating(0.0), 1.0: rotating(0.1), 2.0: rotating(0.2)})
-        # Intervals that are wrong by the same factor give only one warning, until the filter changes.
+        # If the same time scale would suit several intervals, only the first one gives a warning, until the filter changes.
         self.assertEqual([len(self.told(three, time)) for time in (0.5, 1.5, 0.4)], [1, 0, 0])
         self.assertEqual([len(self.told(three, time, TimeScale=0.9)) for time in (0.5, 1.5)], [1, 0])
         alone = interpolator({  # Each particle is in one step only, and moves by its velocity alone.

@@ -44,7 +44,7 @@ class Says(unittest.TestCase):
         self.assertEqual(sorted(set(TEXTS) - used), [], "nobody says these")
 
     def test_each_slot_has_words(self):
-        """Every interface has a word for each slot in the texts, and in C's strings that become parts of texts."""
+        """Every interface has a word for each slot {...} in the texts, and in strings of the C code that become parts of texts."""
         parts = {code: re.findall(r"\{[a-z_%][^{}]*\}", text) for code, text in TEXTS.items()}
         for file in SAID:
             if CORE in file.parents:

@@ -20,8 +20,9 @@ from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, wr
 
 
 def write_vtk(path, kind="", version=0):
-    """Writes a file by VTK. A version makes it a .vtk file of an unstructured grid, as SPlisHSPlasH's are: text if kind is "text", else binary.
-    A kind alone is the compressor of a .vtp file, whose data are base64 for LZ4, else raw bytes. With neither, path's ending counts."""
+    """Writes a file with VTK. If there is a version, it is a .vtk file of an unstructured grid, as SPlisHSPlasH writes it: as text if kind
+    is "text", else binary. Else, if there is a kind, it is a .vtp file, and kind is its compressor; its data are base64 for LZ4, else raw
+    bytes. Else path's ending counts."""
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     if version:

@@ -75,8 +75,8 @@ class Films(Case):
         return np.array(prim.GetAttribute(name).Get(code))
 
     def test_steps(self):
-        """Each time sample holds the surface that the functions make of the step. Velocities are the field's at the
-        surface's points."""
+        """Each time sample of the USD file holds the surface that mc.free_surface() makes of the step. Velocities are the field's values at
+        the surface's points."""
         paths = self.write_steps()
         empty = pyvista.PolyData()
         empty.field_data["TimeValue"] = [0.3]

@@ -165,7 +165,7 @@ def check(programs):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in programs.items():
             (Path(folder) / name).write_text(text)
-        # Other packages may lack types, and functions in the guide need none.
+        # Other packages may lack types, and functions in the guide need no annotations.
         words = ["--strict", "--disable-error-code=import-untyped", "--disable-error-code=no-untyped-def"]
         mypy = subprocess.run([sys.executable, "-m", "mypy", *words, *programs], cwd=folder, stdout=subprocess.PIPE, text=True)
         pyright = subprocess.run([sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "--outputjson", "."], cwd=folder, stdout=subprocess.PIPE,

@@ -172,8 +172,8 @@ def write_data(path, random, style="atomic"):
 
 
 def write_h5part(path, random, steps):
-    """Writes an H5Part file as SPH-EXA does. From eleven steps on, the steps do not have their names' alphabetical order. Returns the
-    columns of each step."""
+    """Writes an H5Part file as SPH-EXA does. With more than ten steps, the alphabetical order of the names is not the order of the steps.
+    Returns the columns of each step."""
     made = []
     with h5py.File(path, "w") as file:
         for step in range(steps):

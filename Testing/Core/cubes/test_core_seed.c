@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests seeds: the line between two particles on different sides of iso marks every cell that it crosses; rounding
- * loses no seeds. The oracle checks that complete seeds miss no edge. */
+/* Tests MCOR_PAIRS: the line between two particles on different sides of iso marks every cell that it crosses, and
+ * rounding loses no cell. The oracle checks that MCOR_COMPLETE misses no crossed edge. */
 
 #include "core_fixture.h"
 #include "mcor_vector.h"
@@ -138,7 +138,7 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   free(m.cell);
 }
 
-/* Checks one pair at a time; its line is along an axis, through edges or corners of cells, in one cell, or random. */
+/* Checks single pairs whose line is along an axis, through edges or corners of cells, within one cell, or random. */
 static void test_line(void** state)
 {
   static const double ends[][6] = { { 0.5, 0.5, 0.5, 17.5, 0.5, 0.5 },

@@ -51,8 +51,7 @@ static void levels_of_particles(void** state)
   assert_int_equal(mcor_tree_level_of(0.5, 1, 24), 0);
 }
 
-/* Checks the error of too many levels: bricks of the lowest level would have numbers too large for
- * an int. */
+/* Checks the error of too many levels: the lowest level would have more bricks than an int can count. */
 static void more_bricks_than_numbers(void** state)
 {
   mcor_context* context = *state;

@@ -105,7 +105,7 @@ static mcor_status flux(
   return status;
 }
 
-/* callbacks: how many of the only rank's callbacks came so far. fail_callback: which one fails, from 0; -1: none. */
+/* callbacks: how often callbacks of the only rank were called. fail_callback: the call that fails, from 0; -1: none. */
 static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
@@ -429,7 +429,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* Enlarges a buffer to a large one, which is mapped to reserve its pages. Each OpenCL call fails once. */
+/* Makes a buffer so large that it is mapped to reserve its pages. Each OpenCL call fails once. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;

@@ -99,8 +99,8 @@ static void test_standard_form(void** state)
   }
 }
 
-/* Checks groups of one particle, two, three in a plane, and four nearly in a plane: the correction's matrix cannot be
- * inverted. The four span a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
+/* Checks groups whose correction has no inverse matrix: one particle, two, three in a plane, and four nearly in a
+ * plane. The four span a body 100 times as wide as high, so inversion would magnify rounding by 100^2. */
 static void test_too_few_neighbours(void** state)
 {
   CORE_SET set = particle_set_make(10);

@@ -364,7 +364,7 @@ static void test_corner_on_the_level(void** state)
   CORE_CHECK(level > 0.05 && level < 0.9 && r.area >= 0 && r.area < 1e-3, level, r.area);
 }
 
-/* The bits are the same for a section alone and among others, for particles that stay on the device or not. */
+/* A section's flux has the same bits if it is measured alone or among others, and if particles stay on the device. */
 static void test_same_bits(void** state)
 {
   static const shape shapes[] = { { MCOR_SECTION_RECTANGLE, 3,

@@ -206,7 +206,7 @@ static void probe_in_another_order(mcor_context* context, double size, double h_
 static void test_bits_do_not_depend_on_other_points(void** state)
 {
   probe_in_another_order(*state, 8, 0.5, 0.9);
-  /* The supports reach up to 256 cubes. */
+  /* The largest support radius is 256 cube edges. */
   probe_in_another_order(*state, 30, 0.25, 16);
 }
 

@@ -50,10 +50,10 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* Returns particle j's factor: the largest of 1, 1.2, ..., 2 at which j's weight sum exceeds iso by a margin, plus part
- * of the step to the next. Few neighbours bring the factor near 1. With all neighbours on one side, the margin is
- * larger for few neighbours, and may be negative for many. *one_sided: 1 for many on one side, 0 for few or on all
- * sides. */
+/* Returns the widening factor of particle j: the largest of 1, 1.2, ..., 2 at which j's weight sum exceeds iso by a
+ * margin, plus a part of the step to the next number. With few neighbours, the factor is near 1. If all neighbours are
+ * on one side, the margin is larger for few neighbours, and may be negative for many. *one_sided: 1 if many neighbours
+ * are on one side; 0 if neighbours are few, or on all sides. */
 static double expected_factor(const particle_set* set, int64_t j, double iso, double* one_sided)
 {
   double crowd = 0, offset[3] = { 0 };

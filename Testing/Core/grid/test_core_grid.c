@@ -88,7 +88,7 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
     count, coincident);
 }
 
-/* Checks cells with about as many particles, spread or in one place, as one work-item sorts, and with more. */
+/* Checks crowded cells: about as many particles as one work-item sorts, and more, spread or at one place. */
 static void test_crowds(void** state)
 {
   static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },

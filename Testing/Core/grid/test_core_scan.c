@@ -122,8 +122,8 @@ static void test_argument_count(void** state)
   mcor_release(context, &buffer);
 }
 
-/* Checks the sorted keys and where each was before, the index that finds keys by bucket, the distinct keys, and where
- * each key's run begins. */
+/* Checks the sorted keys, and the place that each had before; the first key of each bucket; the distinct keys, and
+ * where the run of each begins. */
 static void check_keys(mcor_context* context, int kind, int count)
 {
   const uint64_t limit = kinds[kind].limit;

@@ -122,8 +122,7 @@ static void test_exact_threshold(void** state)
   CORE_CHECK(thresholds > 50, thresholds);
 }
 
-/* Checks that many coincident particles are sorted fast, and that an earlier scalar leaves no
- * trace. */
+/* Checks that many particles at one place are sorted fast, and that the scalar of an earlier call leaves no trace. */
 static void test_coincident(void** state)
 {
   enum

@@ -127,8 +127,8 @@ static int compare_hashes(const void* a, const void* b)
   return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
-/* Checks the medians of neighbours, spacing and smoothing length over the 32 fluid particles whose positions have the
- * least hashes. Absent particles must play no part. */
+/* Checks the medians of spacing, smoothing length and number of neighbours over the 32 fluid particles whose positions
+ * have the least hashes. Absent particles must play no part. */
 static void test_measures(void** state)
 {
   enum

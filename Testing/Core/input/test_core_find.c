@@ -34,7 +34,7 @@ static mcor_request request_of(unsigned wants)
     mcor_request){ .wants = wants, .find = 1, .active = -1, .scalar_component = MCOR_MAGNITUDE };
 }
 
-/* Frees the last result and finds anew, which must succeed. */
+/* Frees the last result. Makes a new search, which must succeed. */
 static void find(
   const mcor_request* request, const mcor_named* arrays, int count, mcor_found* found)
 {
@@ -165,8 +165,8 @@ static void test_one_view(void** state)
   assert_ptr_equal(found.views[MCOR_ROLE_WEIGHT].data, found.input.mass.data);
 }
 
-/* Checks that the fluid is found by the codes of DualSPHysics, by 0 and 1, and by a value given by hand. Then particles
- * outside a range of an array are left out. */
+/* Checks that the fluid is found by DualSPHysics' types, by an array of 0 and 1, and by a value given by hand. Then
+ * particles outside a range of an array are left out. */
 static void test_fluid(void** state)
 {
   const uint8_t codes[COUNT] = { 0, 1, 3, 3 }, wall[COUNT] = { 1, 0, 0, 0 };
@@ -268,8 +268,8 @@ static void test_fluid(void** state)
   refuse(&request, arrays, 4, &found, "NO_SUCH_ARRAY|'Typo'|: Type, IsWall, ptype, WallBlock.");
 }
 
-/* The scalar may be named, chosen as the most suitable of three arrays, or summed. Attributes and the arrays that
- * fluxes need are checked, too. */
+/* The scalar may be named, be chosen as the most suitable of three arrays, or be a density summed from the particles.
+ * Attributes and the arrays that fluxes need are checked, too. */
 static void test_scalar_and_attributes(void** state)
 {
   const int32_t id[COUNT] = { 3, 1, 2, 0 };

@@ -153,7 +153,7 @@ static int reduce_none(void* user, mcor_reduction reduction, double* values, int
   return 0;
 }
 
-/* Seeds by pairs are only for comparisons with the paper, so other features refuse them. */
+/* MCOR_PAIRS serves only comparisons with the paper, so other features refuse it. */
 static void test_pairs(void** state)
 {
   const mcor_ranks ranks = { .reduce_doubles = reduce_none };
@@ -561,8 +561,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* Checks when a free surface is suggested: for a full cube of particles, only if they are a liquid or have solids among
- * them; for a cube without a part of one octant, always. There are enough particles for several threads. */
+/* Checks when a free surface is suggested. If particles fill a cube, it is suggested only for a liquid, or if some are
+ * solids; if they leave a part of one octant empty, always. There are enough particles for several threads. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

@@ -235,8 +235,8 @@ static void test_far_beyond_period(void** state)
   assert_memory_equal(lengths[0], lengths[1], sizeof lengths[0]);
 }
 
-/* Checks that a particle so far away that it has no place on the others' space-filling curve changes their lengths by
- * less than 1e-5. */
+/* A particle is so far away that it has no place on the space-filling curve of the other particles. Checks that it
+ * changes their smoothing lengths by less than 1e-5. */
 static void test_far_away(void** state)
 {
   enum

@@ -30,7 +30,7 @@ static mcor_options make_options(double share, mcor_field field)
   return options;
 }
 
-/* Without solids that matter the surface has nowhere to end, so the share must not change a bit. */
+/* Without solids that matter the surface ends at no wall, so the wall share must not change any bit. */
 static void test_without_solids(void** state)
 {
   CORE_SET set = make_tank();
@@ -101,7 +101,7 @@ static double find_share(const particle_set* set, oracle_kernel kernel, double p
   return at[i - 1].share;
 }
 
-/* Makes the block with 200 solids, so few that each is sampled. */
+/* Makes the tank with only 200 solids, so that all of them are used as samples. */
 static particle_set make_small_tank(void)
 {
   particle_set set = make_tank();

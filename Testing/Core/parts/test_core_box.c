@@ -244,7 +244,7 @@ static void kept_particles(void** state)
   }
 }
 
-/* Checks that global values that measuring never gives are refused. */
+/* Checks that impossible global values, which mcor_measure_globals never gives, are refused. */
 static void impossible_globals(void** state)
 {
   const double iso = 0;

@@ -58,8 +58,7 @@ static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
   return n;
 }
 
-/* Returns the number of the edge between nodes a and b. Adds the edge if it is new; no square has
- * yet made it valid. */
+/* Returns the number of the edge between nodes a and b. If it is new, adds it as an edge that is not yet valid. */
 static int64_t plane_edge_at(
   plane_squares* s, const int64_t a[2], const int64_t b[2], int a_is_above)
 {

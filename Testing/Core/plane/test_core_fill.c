@@ -17,7 +17,7 @@ typedef struct fill_report
   double loose_length;
 } fill_report;
 
-/* An edge from one point to another: of a triangle in a band, or of an iso value's line (of_line). */
+/* An edge from one point to another. of_line: it belongs to an iso value's line, else to a triangle of a band. */
 typedef struct fill_edge
 {
   int32_t from, to;
@@ -421,7 +421,7 @@ static void test_period(void** state)
   CORE_CHECK(fabs(strip.area - 144) < 8, strip.area);
 }
 
-/* No bit depends on the kind of seeds, the order of particles, or kept data. */
+/* No bit depends on options.seeds, on the order of particles, or on kept data. */
 static void test_bits(void** state)
 {
   const double isos[2] = { -3, 4 };

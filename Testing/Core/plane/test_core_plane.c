@@ -268,8 +268,8 @@ static void test_derivatives_and_gauges(void** state)
   }
 }
 
-/* If the scalar is smooth, pairs and complete seeds give the same lines. Data kept from one call serve another iso
- * value. */
+/* If the scalar is smooth, MCOR_PAIRS and MCOR_COMPLETE give the same lines. Data kept from one call serve a call with
+ * another iso value. */
 static void test_pairs_and_reuse(void** state)
 {
   CORE_SET set = plane_make(20, 0.2, 1, 2, -1, 4);

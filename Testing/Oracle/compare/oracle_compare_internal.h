@@ -22,7 +22,7 @@ typedef struct compare_state
   const mesh_report* mesh;
   int trimmed;
   oracle_comparison* result;
-  /* [point_count]: an edge of the lattice (3 * number + axis), or COMPARE_*. */
+  /* For each point of the surface: the lattice edge that it lies on, as 3 * number + axis, or COMPARE_*. */
   int64_t* vertex_edge;
   /* For each crossed edge of the lattice: the number of the point on it, or -1. A pinched edge has a second point,
    * because only two opposite cells around it are valid, and their triangles share no point. */
@@ -33,9 +33,9 @@ typedef struct compare_state
 
 /* ---- oracle_compare.c ---- */
 
-/* Each returns how far a point is inside of a limit of the trimmed surface: the threshold of the trimming weight or
- * boundary eigenvalue; the end at solids, in the unit of the weight; the least fluid weight of a mean.
- * compare_trim_margin returns the least of these three. */
+/* Each returns how far inside of one limit of the trimmed surface a point is. The limits are the threshold of the
+ * trimming weight or boundary eigenvalue; the end at solids, in the unit of the weight; and the least fluid weight of a
+ * mean. compare_trim_margin returns the least of the three values. */
 double compare_threshold_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
 double compare_wall_margin(const compare_state* state, const oracle_sample* sample);

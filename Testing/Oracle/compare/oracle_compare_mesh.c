@@ -10,8 +10,8 @@
 
 /* ---- vertices ---- */
 
-/* Returns the distance of vertex v from the surface f = iso, in cubes: the lesser of the distance by the gradient and
- * the smallest step along the edge, to both sides, within which f crosses iso. */
+/* Returns the distance of vertex v from the surface f = iso, in cubes. It is |f - iso| / |gradient f| or, if this is
+ * less, the smallest step to both sides along the edge within which f crosses iso. */
 static double compare_distance(
   const compare_state* state, int64_t v, int axis, const oracle_sample* sample)
 {
@@ -108,8 +108,8 @@ static void compare_optional_arrays(compare_state* state, int64_t v, const oracl
   }
 }
 
-/* Returns the margin that trimming uses (the least one), and writes its gradient. The eigenvalue's
- * gradient is found by differences. */
+/* Returns the least of the trimming margins, and writes its gradient. The eigenvalue's gradient is found by
+ * differences. */
 static double compare_trim_gradient(const compare_state* state, const double point[3],
   const oracle_sample* sample, double gradient[3])
 {
@@ -147,8 +147,8 @@ static double compare_trim_gradient(const compare_state* state, const double poi
   return margin;
 }
 
-/* Returns 1 if damped least-norm Newton steps lead from the point, within one cube, to a place
- * where f = iso and the margin of compare_trim_gradient is 0. */
+/* Returns 1 if damped least-norm Newton steps lead from the point, within one cube, to a place where f = iso and the
+ * least trimming margin is 0. */
 static int compare_exact_cut_near(const compare_state* state, const double start[3])
 {
   const oracle_reference* reference = state->reference;

@@ -354,7 +354,7 @@ mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
 }
 
 /* Copies the scalar A, less a shift A0, to the sorted particles. With a weight sum, only sets A0 to
- * 0. For a Shepard mean, A0 is the median of A, else 0. The mean of A - A0 is the mean of A less
+ * 0. For a Shepard mean, A0 is near A's median, else 0. The mean of A - A0 is the mean of A less
  * A0, and A - A0 keeps the digits of a scalar with a large offset or a few huge peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {

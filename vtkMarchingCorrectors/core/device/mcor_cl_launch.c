@@ -77,8 +77,8 @@ static mcor_status mcor_enqueue_first(mcor_context* context, const mcor_kernel* 
  * These limits hold even if parts are done quickly, because the next work-items may have far more
  * to do. */
 #define MCOR_PART_TERMS (1 << 21)
-/* If a kernel's time is not known yet, its first part on a CPU has 1 / MCOR_FIRST_SHARE of the
- * work-items that a part may have. */
+/* If a kernel's time is not known yet, its first part on a CPU with a driver has 1 /
+ * MCOR_FIRST_SHARE of the work-items that a part may have. */
 #define MCOR_FIRST_SHARE 32
 #define MCOR_DOUBLE_TERMS (1 << 19)
 

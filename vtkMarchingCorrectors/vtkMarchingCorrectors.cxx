@@ -317,9 +317,9 @@ std::vector<double> ListFactorOptions(const mcor_options& o)
 }
 }
 
-// Gives the input the factors of the smoothing lengths. Uses the last run's factors again if
-// KeepDeviceData is on, and neither the particles nor the options have changed. Returns false if the
-// factors cannot be found.
+// Gives the input the factors by which smoothing lengths are multiplied. Takes the last run's factors
+// if KeepDeviceData is on, and neither the particles nor the options have changed. Returns false if
+// the factors cannot be found.
 bool vtkMarchingCorrectors::TakeWidening(vtkRun& run, vtkSPHParticles& input)
 {
   vtkInternals& kept = *this->Internals;

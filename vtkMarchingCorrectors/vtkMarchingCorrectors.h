@@ -289,9 +289,9 @@ public:
 
   /**
    * If above 1, each particle's smoothing length is multiplied by a factor: the greatest one, up to
-   * this value, with which the particle stays inside the free surface. Flat water becomes flat, and
-   * drops, threads and sheets stay. The array Widening holds the factor. From 1 (off, the default)
-   * to 4; 2 is usual.
+   * this value, with which the particle stays inside the free surface. The surface of calm water
+   * becomes flat; drops, threads and sheets stay. The array Widening holds the factor. From 1 (off,
+   * the default) to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double, 1.0);
 
@@ -404,7 +404,7 @@ public:
   ///@{
   /**
    * Values that the last update used for its only or last block, to be shown in a panel; empty or 0
-   * if nothing was drawn. FluidScalarRange: the range of the contoured scalar at the fluid particles.
+   * after an error or without fluid. FluidScalarRange: the contoured scalar's range at fluid particles.
    * IsoValueArrayName: the point array that says which iso value each point has, if ComputeScalars
    * is on. SurfaceMeasures: the area and, if the surface is closed, the volume, in words; of lines,
    * length and area. EstimatedCells: about how many cubes of the virtual grid the fluid fills.

@@ -71,9 +71,9 @@ public:
 
   ///@{
   /**
-   * Add these quantities of the gradient of a vector; no effect for other arrays. On by default,
-   * except the strain rate. The unit is the array's unit / L, and its square for Q-criterion and
-   * Lambda2.
+   * Add these quantities, which follow from the gradient of a vector; without effect for other
+   * arrays. On by default, except the strain rate. The unit is the array's unit / L; for Q-criterion
+   * and Lambda2, it is the square of this unit.
    */
   vtkSPHFlagMacro(ComputeDivergence, 1);
   vtkSPHFlagMacro(ComputeVorticity, 1);

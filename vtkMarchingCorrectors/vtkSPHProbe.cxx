@@ -22,7 +22,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Most points that the core gets at a time. */
+/** The core gets at most this number of points at a time. */
 constexpr vtkIdType ChunkSize = 1 << 20;
 
 /** The points of a data set, some at a time, in a form that the core reads. */

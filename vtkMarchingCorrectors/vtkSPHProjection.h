@@ -66,9 +66,9 @@ public:
   ///@}
 
   /**
-   * The array whose values B are the weights of a mean: sum V B A / sum V B of what a pixel sees.
-   * With the array of masses, each particle counts by its mass. Empty (the default): the integral
-   * itself.
+   * If an array is named, its values B are weights, and a pixel has the mean of the scalar A that it
+   * sees: sum V B A / sum V B. With the array of masses, each particle counts by its mass. Empty (the
+   * default): a pixel has the integral itself.
    */
   vtkSPHTextMacro(WeightArrayName, "");
 

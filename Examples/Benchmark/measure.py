@@ -77,8 +77,8 @@ class Sets:
         return path
 
     def get_with_one_array(self, kind, count, array):
-        """Writes a set's particles with only the array `array`. Returns the file's path, and options that replace the arrays of
-        smoothing length, mass and density. Raises ValueError if one of these three differs from particle to particle."""
+        """Writes a set's particles with the array `array` alone. Returns the file's path, and options that give the smoothing length,
+        the mass and the density in place of arrays. Raises ValueError if one of these three differs from particle to particle."""
         whole = self.get(kind, count)
         path = whole.with_name(f"{whole.stem}-{array}.vtp")
         particles = read(whole)

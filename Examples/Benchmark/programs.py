@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints, for each program that a driver of a GPU compiles, how many kernels it has, and how many lines of PTX clang and LLVM's back end for
-NVIDIA's cards make of it. LATTICE and FIELD are whole programs; all others are parts of these two.
+"""Prints, for each OpenCL program that the driver of a GPU compiles, the number of its kernels, and the number of lines of the PTX code that
+clang and LLVM's back end for NVIDIA's cards make of the program. LATTICE and FIELD are whole programs; all others are parts of these two.
 
   programs.py [VERSION]     of clang, opt and llc; default: 14. Debian: apt install clang-14 llvm-14
 """

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures how smooth surfaces are, and what smoothing costs.
 
-Particles of two scenes are about one apart, and all but the drops are moved at random, with a deviation below 0.2. The scenes
-are a tank at rest; and a crown, which is a splash with a sheet of one layer, threads at its rim and 40 lone drops.
+There are two scenes: a tank at rest; and a crown, which is a splash with a sheet of one layer, threads at its rim and 40 lone
+drops. All particles but the drops have a spacing of about 1, and are moved at random, with a standard deviation below 0.2.
 """
 import statistics
 

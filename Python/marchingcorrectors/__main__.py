@@ -3,8 +3,8 @@
 """python -m marchingcorrectors COMMAND IN... OUT [--help]. The commands:
 
 convert                      to .vtp or .pvd: a solver's files for ParaView and the shell program; to .usdc: surfaces for Blender and Houdini
-surface                      to .usdc: a film; else the surface of one file; with the program's words, as those below
-gauge, slice, line           levels, and the field on a plane or a line
+surface                      to .usdc: a film; else the surface of one file; takes the shell program's options
+gauge, slice, line           levels, and the field on a plane or a line; take the shell program's options
 
 Several files are the times of a .pvd, and of a film (.usdc, .usda, .usd); else they are bodies of one set (.vtp, .vtu, .vtk)."""
 import signal

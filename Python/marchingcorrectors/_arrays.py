@@ -123,7 +123,7 @@ def copy_at(address, kind, shape):
 
 
 def list_named(arrays):
-    """Returns the core's list of arrays, from {name: array} or from pairs, and its length. An array without numbers has its shape alone."""
+    """Returns the core's list of these arrays, and its length. arrays: {name: array}, or pairs. Of texts, the core gets only the shape."""
     pairs = list(arrays.items() if hasattr(arrays, "items") else arrays)
     named = (c.mcor_named * max(len(pairs), 1))()
     for each, (name, array) in zip(named, pairs):

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 class Keywords(Options, total=False):
-    """The keywords that all functions have."""
+    """The keywords of the functions. Each function has those below, but `outputs` only if it has outputs to choose; and some of the Options."""
 
     fluid: Optional[Fluid]
     solid: Optional[ArrayLike]
@@ -57,8 +57,8 @@ class Keywords(Options, total=False):
 
 
 def own_keywords(kind: Any, options: Sequence[str] = tuple(OUTPUTS)) -> dict[str, Any]:
-    """Returns {name: type} of a class of keywords. Leaves out the core's options, and `outputs` if none of `options` is an
-    output."""
+    """Returns {name: type} of the keywords in the class `kind`. Leaves out the core's options. Also leaves out `outputs` if
+    `options` names no output."""
     return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__
             and (name != "outputs" or not OUTPUTS.keys().isdisjoint(options))}
 
@@ -126,8 +126,8 @@ class Ranges(list):
 
 
 class Finder(Arguments):
-    """Arguments that are arrays of NumPy. Lets the core find volumes, fluid, particles to leave out, and the scalar among the given
-    arrays and the arrays of a file (source: its particles, or None). Without a file, `fluid` and `only` name attributes."""
+    """Arguments that are arrays of NumPy. The core finds volumes, fluid, particles to leave out, and the scalar among the given arrays
+    and a file's arrays. source: the file's particles, or None. `fluid` and `only` name arrays of the file; without a file, attributes."""
 
     def __init__(self, positions, source, attributes):
         super().__init__(positions)

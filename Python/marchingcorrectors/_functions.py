@@ -346,10 +346,10 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
     Returns Gauges: state, first, last, depth and place of each line, and all crossings by name.
 
     lines: (lines, 2, 3), L: the beginning and the end of each; or one line, (2, 3); or {name: (from, to)}.
-    iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+    iso: the sum of the weights at which the fluid ends, as in free_surface(); it must be above 0.
 
-    Solids count in the sum, and the fluid ends where solids weigh more than fluid (wall_share). The other
-    arguments are those of isosurface().
+    Solids count in the sum of the weights, and the fluid ends where solids weigh more than fluid (wall_share). The
+    other arguments are those of isosurface().
 
     {options}
     """
@@ -441,11 +441,11 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
         sides, with normals outwards; (n, 3, 3): triangles, with normals by the right-hand rule,
         or outwards if they are a closed surface; in two dimensions (2, 3) or (n, 2, 3): lines, with normals
         to their right.
-    iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+    iso: the sum of the weights at which the fluid ends, as in free_surface(); it must be above 0.
     density: (particles,) or one value, for mass fluxes; or mass and volume, which give it.
 
-    Solids count in the sum, and the fluid ends where solids weigh more than fluid (wall_share); the means are over the
-    fluid. The other arguments are those of isosurface().
+    Solids count in the sum of the weights, and the fluid ends where solids weigh more than fluid (wall_share). Velocity and
+    density at a point are means over fluid particles only. The other arguments are those of isosurface().
 
     {options}
     """

@@ -239,7 +239,7 @@ PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "c
 
 
 def _save_csv(path, surface):
-    """Writes the same columns as the program: a row for each point of each line."""
+    """Writes a row for each point of each line, with the columns that the program writes."""
     if surface.line_offsets is None and len(surface.triangles):
         raise InvalidArgument(f"{path.name} was not written: .csv holds the points of lines, which particles in a plane give, but this "
                               "is a surface. Formats that hold all arrays are .npz, .ply and .vtp.")
@@ -260,7 +260,7 @@ def _save_csv(path, surface):
 
 
 def _save_ply(path, surface):
-    """Writes the same bytes as the program: a vector has the properties NAME_x, NAME_y and NAME_z."""
+    """Writes the bytes that the program writes. A vector has the properties NAME_x, NAME_y and NAME_z."""
     arrays, columns = surface.point_arrays(), {}  # {property: values} of the points
     normals = arrays.pop("Normals", None)
     named = [(["x", "y", "z"], surface.points), (["nx", "ny", "nz"], normals)]

@@ -167,7 +167,7 @@ def add_values(data, count, chosen, made):
 
 def take_vertices(data, have=None):
     """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++ does, but as a vtkPolyData
-    without cells. Returns the data set itself if nothing has to change. have: whether any block has vertices; None: looks for one."""
+    without cells. Returns the data set itself if nothing has to change. have: whether any block has vertices; None: finds it out."""
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):
@@ -306,7 +306,7 @@ class Particles(Arguments):
                       for name, array in self.interpolated.items()}
         self.scalar_name, self.iso_value_name = self.text("scalar_name"), self.text("iso_value_name")
         whole = self.scalar is not None and self.dot is None and (self.scalar.GetNumberOfComponents() == 1 or component < 0)
-        # This is the name of the array that equals the iso value on the surface, if there is one.
+        # The array that has the iso value on the surface, itself or as magnitude. A component and a dot product have no such array.
         self.contoured = name_of(self.scalar) if whole else None
 
     @staticmethod
@@ -335,8 +335,8 @@ class Particles(Arguments):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
     def sums(self, name, function, *more):
-        """Returns the array (particles,) as Arguments.sums() does. If the particles and the options that matter are as in the last run,
-        returns the array of the last run."""
+        """Returns the sums over neighbours, (particles,), that Arguments.sums() returns. Keeps them for the next run, which computes new
+        ones only if the particles, or the options on which the sums depend, have changed."""
         key = (*self.signatures()[0], self.options.sph_kernel, self.options.dimension, *self.options.periodic, *more)
         if self.choice.Made.get(name, (None,))[0] != key:
             self.choice.Made[name] = key, self._wrap(name, super().sums(name, function, *more))
@@ -422,7 +422,7 @@ def build_mesh(output, surface, arrays):
 
 
 def add_nearest(data, name, array, nearest):
-    """Adds an array of any type: the values of the particles with the numbers `nearest`."""
+    """Adds an array called `name`: for each particle number in `nearest`, the value of `array`, which may have any type."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
         made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
     else:

@@ -38,7 +38,7 @@ struct vtkSPHAttribute
   int Components;
 };
 
-/** What a run needs of the particles, besides their description. */
+/** What a run needs of the particles, besides the arrays and values that a vtkSPHParticlesChoice names. */
 struct vtkSPHWanted
 {
   unsigned Wants = MCOR_WANT_SIZES; ///< bits of mcor_want

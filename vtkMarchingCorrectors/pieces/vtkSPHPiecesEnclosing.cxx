@@ -69,7 +69,7 @@ int Crossing(const Face& face, const Triple& point, double* at)
   return *at <= point[0] ? 0 : n[0] > 0.0 ? 1 : -1;
 }
 
-/** The faces, listed by column. */
+/** Divides space into columns along x. Lists, for each column, the faces that reach into it. */
 class Columns
 {
 public:

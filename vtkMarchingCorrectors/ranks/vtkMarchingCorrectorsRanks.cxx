@@ -47,7 +47,7 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
  */
 mcor_statistics MergeStatistics(const std::vector<mcor_statistics>& parts)
 {
-  // Global numbers come from the first rank that had work: all ranks with work have the same ones.
+  // What is equal on all ranks with work, such as the cube size, comes from the first one of them.
   const auto known = std::find_if(
     parts.begin(), parts.end(), [](const mcor_statistics& part) { return part.cube_size > 0.0; });
   mcor_statistics all = known == parts.end() ? mcor_statistics() : *known;
@@ -90,7 +90,7 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Samples of keys for each rank. With this number, the numbers of keys that ranks get differ by about an eighth. */
+/** About how many keys are sampled for each rank. With 64 samples, the ranks' numbers of keys differ by about an eighth. */
 constexpr std::size_t SamplesPerRank = 64;
 
 /** Returns the end of each rank's range of keys, except the last rank's. All ranks get the same ends. */
@@ -117,8 +117,8 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 
 /**
  * Numbers the distinct keys of all ranks in order. Returns the numbers of this rank's keys in an
- * array called `name`. keys: must ascend. areCells: a key takes one number for each triangle of its
- * cell; the key's last part counts the triangles. total: how many numbers all keys take.
+ * array called `name`. keys: must ascend. areCells: a key stands for a cell, and takes as many numbers
+ * as the cell has triangles, which is the key's last part. total: how many numbers all keys take.
  */
 vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   vtkSPHRanks& ranks, const Keys& keys, bool areCells, const char* name, vtkIdType& total)
@@ -222,7 +222,7 @@ void MeasureSurface(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeAr
 {
   mcor_measures measures = {};
   const Numbers own(numbers->GetPointer(0), numbers->GetPointer(0) + numbers->GetNumberOfTuples());
-  // The first point of the whole surface is the origin.
+  // Area and volume are measured from the first point of the whole surface as origin.
   const auto first = std::find(own.begin(), own.end(), std::int64_t(0));
   for (int a = 0; a < 3; ++a)
   {

@@ -227,7 +227,7 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
   arrays = vtkSPHSendTuples(ranks, arrays, to, &from);
   const vtkIdType own = arrays[0]->GetNumberOfTuples();
 
-  // Computes the sums of the first `count` particles over all particles. Returns false if a rank failed.
+  // For the first `count` particles in `arrays`, computes sums over all particles in `arrays`. Returns false if a rank failed.
   const auto sum = [&](vtkIdType count, double* sums)
   {
     this->CallAside(

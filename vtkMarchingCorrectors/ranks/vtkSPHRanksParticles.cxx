@@ -229,7 +229,7 @@ vtkSPHRanksArrays vtkSPHGatherTuples(
 
 namespace
 {
-/** The form of an array, to be sent: its name, its type, the names of its components, its role. */
+/** The form of an array, which ranks tell each other: its name, its type, the names of its components, its role. */
 using Form = std::tuple<std::string, int, std::vector<std::string>, int>;
 enum FormMember
 {
@@ -251,8 +251,8 @@ Form FormOf(vtkAbstractArray* array, const char* name, int role)
 }
 
 /**
- * Lists the forms of the positions, then of the point arrays with a name and a value for each
- * point, except vtkGhostType.
+ * Returns the form of the positions, then the forms of the point arrays that have a name and a value
+ * for each point. Leaves out vtkGhostType.
  */
 std::vector<Form> Describe(vtkPolyData* particles)
 {
@@ -277,7 +277,7 @@ std::vector<Form> Describe(vtkPolyData* particles)
 
 /**
  * Lists the forms of the arrays that all ranks with points have, in the order of the first such
- * rank. If there are no points at all, lists the arrays of the rank that has most arrays.
+ * rank. If no rank has points, lists the arrays of the rank with the largest number of arrays.
  * Collective.
  */
 std::vector<Form> AgreeOnForms(vtkSPHRanks& ranks, vtkPolyData* particles)
@@ -319,8 +319,8 @@ std::vector<Form> AgreeOnForms(vtkSPHRanks& ranks, vtkPolyData* particles)
 }
 
 /**
- * Copies the points `ids`, with arrays of these forms. An array that is wanted whole and in its own
- * form is not copied, but shared. An array that `from` lacks gets no values.
+ * Copies the points `ids`, with arrays of these forms. If all points are wanted, an array that has
+ * its form already is shared, not copied. If `from` lacks an array, no values are written to it.
  */
 vtkSmartPointer<vtkPolyData> TakePoints(
   vtkPolyData* from, const std::vector<Form>& forms, vtkIdList* ids)
@@ -408,7 +408,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   return particles;
 }
 
-// Arrays stay in their order, with computed arrays last, so that other ranks find the same arrays.
+// Keeps the arrays' order, computed arrays last, so that other ranks choose the same arrays by name.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
 {
   vtkSPHRanksArrays wanted;

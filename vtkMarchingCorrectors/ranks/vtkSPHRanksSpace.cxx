@@ -270,8 +270,8 @@ void vtkSPHRanksSpace::Cut(
   this->Cut(middle, end, first + lower, count - lower, high);
 }
 
-// If there are more ranks than parts or bricks, some boxes are empty. The core needs a box, so an
-// empty box is replaced by a box at a place where there is nothing.
+// A rank has no box if only some ranks get boxes, and an empty box if there are too few bricks to
+// share. The core needs a box, so it then gets one at a place where there is nothing.
 vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
 {
   const vtkSPHRanksBox box =
@@ -392,8 +392,8 @@ struct CoarseGrid
   }
 
   /**
-   * Estimates from a cell and the six cells around it how many surfaces pass through the cell, each
-   * as large as a side of the cell.
+   * Estimates from a cell and the six cells around it how many surfaces pass through the cell. Each
+   * surface is taken to be as large as a side of the cell.
    */
   int CountSurfaces(const mcor_options& options, std::size_t cell) const
   {

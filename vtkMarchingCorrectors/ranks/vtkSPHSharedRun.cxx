@@ -204,8 +204,8 @@ bool vtkSPHAlgorithm::vtkSharedRun::MeasureLengths(vtkSPHParticles& particles)
   return good;
 }
 
-// Sets the box to the bounds of the places, cut off at the bounds of the particles, with a margin.
-// Along periodic axes the box is infinite.
+// Sets the run's box to the bounds of the places to evaluate, as far as these lie within the bounds
+// of the particles, and adds a margin. Along periodic axes the box is infinite.
 void vtkSPHAlgorithm::vtkSharedRun::PlaceBox(const double low[3], const double high[3])
 {
   const mcor_measure& measured = this->Globals.measured;

@@ -114,8 +114,8 @@ struct Job
   double TimeStep = 1.0; ///< time between the steps of a film of particle files
   SliceOptions Slice;
   std::vector<Place> Places; ///< gauges, or sections
-  /// The numbers of --gauge-grid, upright gauges over a rectangle: counts along x and y, then x0, x1, y0,
-  /// y1, z0, z1; empty: there is no grid. If there is a grid, no other gauges are given.
+  /// The numbers of --gauge-grid, which puts upright gauges over a rectangle: how many along x and along y,
+  /// then x0, x1, y0, y1, z0, z1. Empty: there is no grid. If there is a grid, no other gauges are given.
   std::vector<double> Grid;
   /// The particles get the gradient of this array, and arrays that follow from the gradient, such as the
   /// vorticity; empty: no array.

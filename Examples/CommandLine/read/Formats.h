@@ -152,8 +152,8 @@ using Table = std::vector<Column>;
 
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells, char separator);
 
-/// Returns the columns x, y and z that exist. behind: letters that follow x, y and z in the
-/// names.
+/// Returns the columns that are called x, y and z, as far as they exist. behind: letters that the
+/// names have behind x, y and z, such as "u" in xu.
 std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind);
 
 /// Finds the three columns of positions by their names; none if no name fits. Fails if only one or two columns are

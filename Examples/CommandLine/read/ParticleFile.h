@@ -34,8 +34,8 @@ std::string ParticleFileEndings();
 /// ... for these words in their order, 0 for other words.
 std::map<std::string, std::vector<std::string>>& ChosenWords();
 
-/// Reads particles from files that each hold a part of them, as ReadSets() and JoinSets() do. Without
-/// `mayBeEmpty`, there must be points. Names of arrays are made fit to print.
+/// Reads files that each hold a part of the particles, and joins the parts, see ReadSets() and
+/// JoinSets(). Throws if there are no points, unless `mayBeEmpty`. Makes names of arrays fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, bool mayBeEmpty = false);
 

@@ -47,8 +47,8 @@ void FindAwaited()
 }
 
 #ifdef __ELF__
-/// Runs before libraries begin: UCX, which comes with some MPI, takes hangups for itself when it is
-/// loaded.
+/// Finds the awaited signals before libraries begin, because UCX, which comes with some MPI, handles
+/// hangups itself from the moment when it is loaded.
 __attribute__((section(".preinit_array"), used)) void (*const FindAwaitedFirst)() = FindAwaited;
 #else
 const bool FoundAwaited = (FindAwaited(), true);
@@ -225,8 +225,8 @@ void PrepareForEnding()
   std::signal(SIGXFSZ, SIG_IGN);
   KeepWatchOfCrashes();
   // All later threads leave these signals to one thread that waits for them. Unlike a handler, this
-  // thread may lock and allocate. Ignored signals are blocked, too, but never awaited. Otherwise LLVM, which PoCL
-  // brings, would handle them, and its handler unblocks all other signals.
+  // thread may lock and allocate. Ignored signals are blocked, too, but never awaited: if they were not blocked,
+  // LLVM, which PoCL brings, would handle the ignored signals, and its handler unblocks all others.
   pthread_sigmask(SIG_BLOCK, &All, nullptr);
   try
   {

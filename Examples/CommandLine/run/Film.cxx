@@ -46,8 +46,8 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// Makes the image of a step without particles in the image, with the place and size of the image `like`.
-/// All values are 0, or NaN if the image shows a mean.
+/// Makes the image for a step of which no particle lies in the image. Its place and size are those of the
+/// image `like`. All values are 0, or NaN if the image shows a mean.
 vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
 {
   auto empty = vtkSmartPointer<vtkImageData>::New();

@@ -57,8 +57,8 @@ Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
   return steps;
 }
 
-/// A file's name, as the text without its numbers, and the numbers. A number is a pair of its count of digits and its
-/// digits, without leading zeros, so that such pairs have the order of the numbers.
+/// A file's name, split into the text without the numbers, and the numbers. A number is a pair: the count of its digits, and
+/// the digits, both without leading zeros. Pairs thus have the order of the numbers.
 using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, std::string>>>;
 
 NumberedName Numbered(const std::string& name)
@@ -79,9 +79,9 @@ NumberedName Numbered(const std::string& name)
   return numbered;
 }
 
-/// Adds the walls of a file to all steps. If the name has %d, each step gets the file with the last number
-/// in the name of the step's own file. If the file is a list, each step gets the walls at its time or, without
-/// `haveTimes`, the next walls. haveTimes: the steps come from a list. Throws if a step gets no walls.
+/// Adds the walls of a file to all steps. If the name has %d, each step gets a file of its own: the last
+/// number in the name of the step's file takes the place of %d. If the file is a list, each step gets the walls at
+/// its time or, without `haveTimes`, the next walls. haveTimes: the steps come from a list. Throws if a step gets no walls.
 void AddStepWalls(
   const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {

@@ -106,8 +106,8 @@ double NumberOf(vtkFieldData* run, const std::string& name, double none = 0.0);
 /// are not whole get six digits.
 std::string Fill(vtkFieldData* run, const std::vector<std::string>& forms);
 
-/// Describes a run's field data in four or five lines. atLength: in more lines, for users who know the method;
-/// onlySeconds: tells only the run's seconds. Returns "" if the run had no particles to use.
+/// Describes a run's field data in four or five lines; with `atLength` in more lines, for users who know the method;
+/// with `onlySeconds` in one line, which gives the run's seconds. Returns "" if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run, bool atLength, bool onlySeconds);
 
 /// Returns the statistics of the last of `runs` as JSON, with the seconds of each run.

@@ -22,8 +22,8 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Unless a range was given, widens the range so that it has the values on most of this data set's area
-  /// (all values of an array of cells). A film's colours thus cover all steps so far. Throws
+  /// Unless the user gave a range, widens the colours' range so that it has the values on most of this data
+  /// set's area; if cells have the array, all values. A film's colours thus cover all steps so far. Throws
   /// std::runtime_error if the data set has points, but the array to colour by is missing or holds texts.
   void Include(vtkDataSet* data);
 
@@ -31,7 +31,7 @@ public:
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
   vtkDataArray* CellArrayOf(vtkDataSet* data) const;
 
-  /// If no array was wanted, and the surface has several iso values, chooses colours by iso value or band.
+  /// If no array was wanted, and there are several iso values, colours by iso value; or by band, for filled regions.
   void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for

@@ -70,7 +70,7 @@ def files_of(path, count):
 
 
 def numbers_of(types):
-    """Returns the numbers of types of particles; None means gas."""
+    """Lists the types of particles as numbers, gas being 0. types: a name or a number, a list of these, or None, which means gas."""
     types = 0 if types is None else types
     chosen = [types] if isinstance(types, (str, int)) else list(types)
     numbers = []

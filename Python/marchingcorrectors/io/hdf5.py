@@ -102,7 +102,8 @@ def names_of(group, count, most=9):
 
 
 def check_claims(groups):
-    """Raises FileError if the file cannot hold all arrays of these groups together: many names may mean the same data."""
+    """Raises FileError if all arrays of these groups together have more bytes than the file can hold: each array alone may be small
+    enough, but many names may mean the same data."""
     claimed = sum(get(group, name).nbytes for group in groups for name in group if is_numbers(get(group, name)))
     for group in groups:
         path = group.file.filename

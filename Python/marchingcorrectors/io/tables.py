@@ -116,7 +116,7 @@ def join_vectors(columns):
 
 
 def axes_of(columns, behind=""):
-    """Returns the names of the columns x, y and z that exist. behind: letters that follow x, y and z in the names."""
+    """Returns the names of the columns x, y and z, as far as they exist. behind: letters behind x, y and z, such as "u" in xu."""
     found = [next((name for name in columns if name.lower() == axis + behind), None) for axis in "xyz"]
     return [name for name in found if name is not None]
 

@@ -70,8 +70,8 @@ def find_vertices(types, offsets, points, count):
 
 
 def take_vertices(file, body, lists, cell_arrays):
-    """Keeps only the vertices' points if there are other cells, too, because other points belong to a mesh. Arrays of cells then become arrays
-    of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become
+    """If there are vertices and other cells, keeps only the vertices' points: the other points belong to a mesh. Arrays of cells then become
+    arrays of the points, unless points have an array of that name. If all cells are vertices, and each point has one, arrays of cells become
     arrays of the points, too. Warns if points are left out. Returns the body; if there are cells, its is_mesh says whether none of them
     is a vertex.
 

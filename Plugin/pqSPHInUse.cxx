@@ -630,8 +630,8 @@ void pqSPHInUse::lookAhead()
   this->showRows();
 }
 
-// A new filter's panel begins with an array and an iso value, which then follows the array until
-// the user sets another value. A filter that was loaded, or made by a script, stays as it is.
+// A new filter's panel begins with an array and an iso value. The iso value changes with the array until
+// the user sets a value. A filter that was loaded, or made by a script, stays as it is.
 void pqSPHInUse::begin()
 {
   vtkSMProxy* filter = this->proxy();

@@ -234,9 +234,9 @@ public:
   ///@}
 
   /**
-   * Close the surface at the sides of the period and of the box's cells, where values are above the
-   * iso value: with flat triangles, in two dimensions with straight lines. Trimming and walls may
-   * leave the surface open. Off by default. Cannot be combined with PAIRS or Filled.
+   * Close the surface where values above the iso value meet the sides of the period, or of the cells
+   * that UseBox draws: with flat triangles, in two dimensions with straight lines. Trimming and walls
+   * may leave the surface open. Off by default. Cannot be combined with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping, 0);
 

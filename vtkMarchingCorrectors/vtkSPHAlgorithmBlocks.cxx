@@ -204,8 +204,8 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-// For each end of each axis, keeps the `far` + 1 coordinates nearest to the end: at most `far`
-// particles are left out there. Coordinates for upper ends are negated.
+// Keeps, for both ends of each axis, the `far` + 1 outermost coordinates, because at most `far`
+// particles are left out at an end. At upper ends, coordinates are negated.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {
   const auto run = vtkRun::Make(this);
@@ -307,7 +307,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], 
   return true;
 }
 
-// The bounds are unknown if processes share a run, because all of them would have to ask together.
+// If processes share a run, bounds are unknown: all processes would have to call this at one time.
 double* vtkSPHAlgorithm::FindNextBounds(bool densest)
 {
   const vtkSmartPointer<vtkPointSet> particles =

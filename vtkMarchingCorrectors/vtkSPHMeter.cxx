@@ -191,7 +191,7 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   }
 }
 
-// Merges the places of all processes, each once. Numbers may be NaN, so their bytes are compared.
+// Lists the places of all processes, equal places once. Numbers may be NaN, so bytes are compared.
 std::vector<vtkSPHMeter::Place> vtkSPHMeter::Merge(vtkRun& run, const std::vector<Place>& mine)
 {
   std::vector<vtkRun::Named> own;

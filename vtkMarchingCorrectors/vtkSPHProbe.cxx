@@ -121,9 +121,9 @@ struct ChunkProgress
 };
 
 /**
- * If KeepDeviceData is off, particles have this version in a run of several chunks. Without a
- * version, each chunk would make the search grid anew. No kept run has this version. In a run of one
- * chunk, particles have no version, so that only those near the points go to the device.
+ * The particles' version in a run of several chunks without KeepDeviceData: equal versions let the
+ * core use its search grid for the next chunk, too. Runs with KeepDeviceData never have this version.
+ * A run of one chunk has none, so that only the particles near the points go to the device.
  */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 

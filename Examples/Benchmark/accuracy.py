@@ -5,8 +5,8 @@
 
     accuracy.py [walls] [volumes] [curvature] [attributes] [corrected]
 
-Particles are one apart, with volumes of 1 and the cubic kernel unless a table says otherwise. Needs the Python package; the
-last table needs SciPy, too, and is run in the repository's root.
+The spacing and the volume of the particles are 1, and the kernel is cubic, unless a table says otherwise. Needs the Python
+package; the last table needs SciPy, too, and is run in the repository's root.
 """
 import sys
 import warnings

@@ -17,8 +17,8 @@ def medians(rows):
 
 
 def adaptive(benchmark):
-    """Measures adaptive cubes. With given particles, prints for uniform and adaptive cubes in turn: the triangles, the
-    seconds of a process's second surface, and the processor seconds by which two surfaces take longer than one. Without
+    """Measures adaptive cubes. With given particles, prints for uniform and for adaptive cubes: the triangles, the
+    seconds of a process's second surface, and the processor seconds of two surfaces minus those of one surface. Without
     given particles, times whole processes with adaptive cubes, for smoothing lengths that vary by 1:10, 1:100 and 1:1000."""
     out, program = benchmark.report, benchmark.program
     if not benchmark.files:
@@ -412,8 +412,8 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns how many copies a rank gets: the mean or, with `most`, the most of any rank. depth: how deep the shells are. If
-        a side is cut into p parts, a part has a neighbour on a given side with probability 1 - 1/p."""
+        """Returns how many copies a rank gets: the mean or, with `most`, the largest number. depth: the thickness of the shells. If
+        the whole box is cut into p parts along an axis, a part has a neighbour on each of its two sides with probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))

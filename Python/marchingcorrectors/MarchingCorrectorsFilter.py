@@ -94,7 +94,8 @@ def snake(name):
 
 
 def with_properties(kind):
-    """Defines SetX, GetX, XOn and XOff, and the properties X and x, for each X of PROPERTIES; and what the other tables name. Returns the class."""
+    """Adds to the class `kind` SetX, GetX, XOn and XOff, and the properties X and x, for each X of PROPERTIES; also what SIDES, WORDS and other
+    tables name. Returns the class."""
     def define(name, get, put=None):
         setattr(kind, "Get" + name, get)
         setattr(kind, snake(name), property(get, put))

@@ -36,8 +36,8 @@ def on_host(values, role):
         dtype, stream = np.dtype(interface["typestr"]), interface.get("stream")
         return _copy(interface["data"][0], interface["shape"], dtype, interface.get("strides"), stream, role)
     if hasattr(values, "__dlpack_device__") and int(values.__dlpack_device__()[0]) == ON_CUDA:
-        # 1 is CUDA's legacy default stream: the array's library makes this stream wait until the array is complete. The capsule
-        # frees the tensor when Python deletes the capsule.
+        # Stream 1 is CUDA's legacy default stream. The library of the array makes this stream wait until the array is complete. The
+        # capsule frees the tensor when Python deletes the capsule.
         capsule = values.__dlpack__(stream=1)
         pointer = ctypes.pythonapi.PyCapsule_GetPointer
         pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]

@@ -272,8 +272,8 @@ def label_pieces(triangles, count):
 
 
 def small_pieces(surface, label, positions, fluid, least):
-    """Returns (piece, its particles) for each closed piece with fewer than `least` particles. The particles of a piece
-    are enclosed by the piece, or nearest to one of its points. Also lists a cavity if its box lies in the box of such a piece."""
+    """Returns (piece, its particles) for each small piece: closed, with fewer than `least` particles. Particles belong to a piece if the
+    piece encloses them, or if they are nearest to one of its points. Also lists a cavity if its bounds lie in those of a small piece."""
     piece = label[surface.triangles[:, 0]]
     corners = surface.points[surface.triangles].astype(float)
     volume = np.bincount(piece, np.linalg.det(corners), len(label))

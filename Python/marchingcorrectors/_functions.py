@@ -383,7 +383,8 @@ FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, r
 
 
 def _as_section(section, name, units):
-    """Returns a section's shape, a number of mcor_section_shape; points (n, 3), or a disc's centre and normal; a disc's radius, else 0."""
+    """Returns a section's shape, as a number of mcor_section_shape; its points (n, 3), of a disc the centre and the normal; and its radius, 0 unless
+    the section is a disc."""
     def numbers(values, shape):
         array = contiguous(values, "section").astype(np.float64)
         if array.shape != shape:

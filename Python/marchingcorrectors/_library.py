@@ -148,7 +148,7 @@ _ready_in = None  # OpenCL was started in this process.
 
 
 def start():
-    """Raises DeviceError if OpenCL was started before this process was forked. Comes before each call that uses OpenCL."""
+    """Must be called before each use of OpenCL. Raises DeviceError if OpenCL was started before this process was forked."""
     global _ready_in
     with _state_lock:
         if _ready_in is None:

@@ -120,8 +120,8 @@ class Surface(Result):
 
     @property
     def lines(self) -> List[np.ndarray]:
-        """In two dimensions, the numbers of the points of each polyline, with greater values on its left. A closed polyline ends
-        with its first point."""
+        """In two dimensions, the indices of the points of each polyline. Values are greater on the polyline's left. A closed polyline
+        ends with its first point."""
         if self.line_offsets is None:
             return []
         return np.split(self.line_points, self.line_offsets[1:-1]) if len(self.line_offsets) > 1 else []

@@ -355,9 +355,9 @@ class Particles(Arguments):
         return lib.mcor_estimate_cells(given, ctypes.byref(self.options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
-        """Returns three marks: the first changes with the particles, the second with the scalar, the third with the options that the
-        factors of smoothing lengths depend on. The data set's own time counts, too, because users change arrays in place, and call
-        only the data set's Modified()."""
+        """Returns three marks. The first changes if the particles change, the second with the scalar, the third with the options on which
+        the factors of smoothing lengths depend. The first mark also has the data set's time, because users change arrays in place, and
+        then call only the data set's Modified()."""
 
         def sign(thing):
             return None if thing is None else (thing.__this__, thing.GetMTime())
@@ -437,7 +437,7 @@ def add_nearest(data, name, array, nearest):
 
 
 def add_run(run, found, particles):
-    """Adds a run's results, settings and costs. Over blocks, costs are summed; of a peak, the greatest is kept."""
+    """Adds a run's results, settings and costs. If there are several blocks, their costs are summed; of peaks, the greatest one is kept."""
     s, o = found.statistics, particles.options
     for name in ("Device", "Platform"):
         add(run, name, s[name.lower()])

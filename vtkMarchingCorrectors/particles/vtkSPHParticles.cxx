@@ -322,7 +322,7 @@ bool vtkSPHParticles::HasFreeSurface(const mcor_ranks* ranks) const
   return mcor_has_free_surface(&core, ranks) != 0;
 }
 
-// The data set's time counts, too: users change arrays in place, and call only the set's Modified().
+// The data set's time counts, too, because users change arrays and call only the set's Modified().
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
   std::vector<std::uint64_t> particles;

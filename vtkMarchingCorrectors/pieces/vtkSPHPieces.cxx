@@ -113,8 +113,8 @@ vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
 }
 
 // Joins the pieces of two points. The piece of `one` moves up by a period along this axis; it does
-// not move if the axis is -1. If two ways through a piece to the same point give different shifts,
-// the piece goes around the period.
+// not move if the axis is -1. If two paths through a piece lead to one point with different
+// shifts, the piece goes around the period.
 void vtkSPHPieces::Join(vtkIdType one, vtkIdType other, int axis)
 {
   const vtkIdType old = this->FindRoot(one), kept = this->FindRoot(other);
@@ -169,8 +169,8 @@ std::vector<vtkSPHPieces::Edge> vtkSPHPieces::ListOpenEdges(const std::vector<vt
   return open;
 }
 
-// Joins pieces across the period's sides. An open edge in a side is where the surface goes on
-// beyond the side, or where a cap was trimmed. Points of open edges on opposite sides match if
+// Joins pieces across the period's sides. At an open edge in a side, the surface goes on beyond the
+// side, or a cap was trimmed. Points of open edges on opposite sides match if
 // their other two coordinates are equal. Two matching points get one number in `twins`. bounds: the
 // bounds of the points that triangles use.
 void vtkSPHPieces::JoinSides(const double bounds[6], std::vector<vtkIdType>& twins)
@@ -352,8 +352,8 @@ void vtkSPHPieces::MoveHome()
   }
 }
 
-// Finds the parent of each cavity: the piece that encloses it. A cavity in a piece without a volume,
-// such as a layer over the whole period, has this piece as its parent.
+// Finds the parent of each cavity: the piece that encloses the cavity. The parent may also be a piece
+// without a volume, such as a layer over the whole period.
 void vtkSPHPieces::FindParents(double isoValue)
 {
   std::vector<Triple> places;

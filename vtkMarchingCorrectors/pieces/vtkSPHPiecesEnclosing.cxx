@@ -135,8 +135,8 @@ private:
 };
 
 /**
- * Replaces `innermost` by a piece that encloses the point if the piece's volume has a smaller
- * magnitude, or if `innermost` is -1. The piece `without` is ignored.
+ * Finds the pieces that enclose the point, except `without`. Replaces `innermost` by the one with the
+ * smallest magnitude of the volume, if this is smaller than that of `innermost`, or if that is -1.
  */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)
@@ -166,8 +166,8 @@ void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, con
 }
 }
 
-// Lists the shifts from a point in the period to its images that may lie in pieces. hasVolume:
-// whether these are the pieces with a volume, or the pieces without a volume.
+// Lists the shifts by whole periods that may bring a point in the period into a piece. hasVolume:
+// considers the pieces with a volume if true, the pieces without a volume if false.
 std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
 {
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };

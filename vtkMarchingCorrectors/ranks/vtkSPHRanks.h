@@ -106,7 +106,7 @@ public:
   /** Merges each range, a least and a greatest value, over all ranks. An empty range goes from infinity to -infinity. */
   void ReduceRanges(double* ranges, int count)
   {
-    // Negated greatest values are least values, so that one Reduce() is enough.
+    // A greatest value is found as the least of the negated values, so that one Reduce() is enough.
     const auto negateGreatest = [ranges, count]
     {
       for (int i = 1; i < 2 * count; i += 2)

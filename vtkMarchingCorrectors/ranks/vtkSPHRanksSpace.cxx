@@ -81,8 +81,8 @@ void vtkSPHRanksSpace::Enter(double at[3]) const
   }
 }
 
-// Returns how far a particle reaches: its scaled and widened support and, for a large particle, the
-// excess of its margin over the least margin. Smoothing lengths before widening decide on the margin.
+// Returns how far a particle reaches: its support, scaled and widened, plus the difference between its
+// margin and the least margin. The margin depends on the smoothing length before widening.
 double vtkSPHRanksSpace::ReachOf(const mcor_input& input, std::int64_t i) const
 {
   const mcor_options& options = *this->Options;
@@ -194,7 +194,7 @@ std::vector<double> vtkSPHRanksSpace::FindRadii(
   return radii;
 }
 
-// The work of samples is counted in units of `step`. If there is little work, `step` is 1.
+// Samples the work. A sample's work is counted in units of `step`, which is 1 if there is little work.
 void vtkSPHRanksSpace::Divide(
   vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts)
 {
@@ -280,8 +280,8 @@ vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
   return isEmpty ? vtkSPHRanksBox{ 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 } : box;
 }
 
-// The k-d tree cuts a group of boxes into two halves. The first boxes of both halves have the same
-// low sides, except along the axis of the cut.
+// The k-d tree divides each group of boxes into two halves by a cut. Along the axis of the cut, the
+// low sides of the halves' first boxes differ; along other axes they are equal.
 int vtkSPHRanksSpace::FindOwner(const double at[3]) const
 {
   double place[3] = { at[0], at[1], at[2] };
@@ -312,7 +312,7 @@ vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
   return owners;
 }
 
-// The first box of a group has the low sides of the whole group, the last box has the high sides.
+// The `count` boxes fill a larger box: its low sides are the first box's, its high sides the last's.
 bool vtkSPHRanksSpace::Reaches(int rank, int count, const double at[3], double radius) const
 {
   bool reaches = true;
@@ -320,8 +320,8 @@ bool vtkSPHRanksSpace::Reaches(int rank, int count, const double at[3], double r
   {
     const double low = this->Boxes[Index(rank)][Index(2 * a)],
                  high = this->Boxes[Index(rank + count - 1)][Index(2 * a + 1)];
-    // The cube reaches the box if the place moves by `first` to `last`. Along a periodic axis the
-    // place may move by whole periods, else it may not move.
+    // The cube reaches the box if the cube is moved by at least `first` and at most `last`. Along a
+    // periodic axis it may move by whole periods, which are then counted; else it may not move.
     double first = low - radius - at[a], last = high + radius - at[a];
     first = this->IsPeriodic(a) ? std::ceil(first / this->Length[a]) : first;
     last = this->IsPeriodic(a) ? std::floor(last / this->Length[a]) : last;

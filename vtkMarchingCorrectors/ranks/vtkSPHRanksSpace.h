@@ -29,8 +29,8 @@ struct vtkSPHRanksPlace
 
 /**
  * The space of a run: the part of one period that lies in the run's box. Share() divides the space
- * among ranks by a k-d tree over samples of the work, with cuts between the lattice's bricks. All
- * ranks have the same samples, and so the same tree.
+ * among ranks by a k-d tree over samples of the work; bricks of 4 x 4 x 4 cubes are not cut. All ranks
+ * have the same samples, and so the same tree.
  */
 class vtkSPHRanksSpace
 {
@@ -55,8 +55,8 @@ public:
   vtkSPHRanksLists Share(vtkSPHRanks& ranks, const mcor_input& input,
     const std::vector<std::int64_t>& work, std::vector<vtkSPHRanksPlace> places, int parts);
 
-  /** Divides the work at these places among the boxes of the first `parts` ranks; cuts may lie
-   * anywhere if the globals have no cube size. Collective. */
+  /** Divides the work at these places among the boxes of the first `parts` ranks. Without a cube size
+   * in the globals, there are no bricks, and cuts may lie anywhere. Collective. */
   void Divide(vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, int parts);
 
   /**
@@ -94,8 +94,8 @@ private:
    * tree divides among the `count` ranks from `rank` on.
    */
   bool Reaches(int rank, int count, const double at[3], double radius) const;
-  /** Adds to `found` those of the `count` ranks from `rank` on whose boxes a cube around `at`, or
-   * around an image of `at`, reaches. radius: half of the cube's edge. */
+  /** A cube around `at`, or around an image of `at`, reaches the boxes of some of the `count` ranks from
+   * `rank` on: adds these ranks to `found`. radius: half of the cube's edge. */
   void AddReached(
     int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 

@@ -56,12 +56,12 @@ public:
   void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
 
   /**
-   * Does what Share() does, but sends these particles with all their arrays, and divides the space
-   * among the first `parts` ranks only. `mine` describes the particles.
+   * Like Share(), but sends the set `particles`, which `mine` describes, with all its arrays, and
+   * divides the space among the first `parts` ranks only.
    */
   vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
-  /** Makes the input stand for all ranks' particles in warnings: sets their number, and takes away
-   * the globals, and the positions and marks of solids, which are of this rank's particles alone. */
+  /** Makes the input describe all ranks' particles, for warnings: sets their number, and removes the
+   * globals. Also removes positions and marks of solids: this rank knows only its own particles'. */
   void OfAll(mcor_input& core, mcor_options& options) const;
   /** Adds a statistic with one component for each rank. */
   template <typename T>

@@ -145,7 +145,7 @@ bool vtkSPHTemporalPair::Match(
   return true;
 }
 
-// Sorts each step's particles by number, and finds the numbers that are in both lists. Returns false, after an error, if they are no ids.
+// Sorts each step's particles by id, and finds the ids in both steps. Returns false, after an error, if ids are not whole or not unique.
 bool vtkSPHTemporalPair::MatchNumbers()
 {
   std::vector<std::pair<std::int64_t, vtkIdType>> sorted[2];
@@ -278,8 +278,8 @@ bool vtkSPHTemporalPair::Find(const std::string& role, const std::string& name, 
   return this->Error.empty();
 }
 
-// Warns, and does not use the velocities, if a velocity is not finite, or if the particles in both steps, FewParticles
-// or more, have on the whole moved less than half, or more than twice, as far along their velocities as these say.
+// Warns, and does not use the velocities, if a velocity is not finite, or if the velocities do not fit the motion:
+// FewParticles or more are in both steps, and have together moved less than half or more than twice as far as the velocities say.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

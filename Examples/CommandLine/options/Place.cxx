@@ -36,7 +36,7 @@ std::vector<double> ParsePlaces(Text text, const std::vector<std::size_t>& count
   return isGood ? numbers : std::vector<double>();
 }
 
-/// Returns `text`, made printable, as the name of a table's row. noun: the word for what has this name. Throws UsageError.
+/// Returns `text`, made printable, as the name of a table's row. noun: what has this name, such as a gauge. Throws UsageError.
 std::string ToRowName(Text option, Text noun, Text text)
 {
   const std::string name = Printable(text);

@@ -172,7 +172,7 @@ Data Read(File file, const Formats& formats, std::size_t step = 0)
   return data;
 }
 
-/// Returns the array; if --only chooses words in it, its texts become numbers, see ChosenWords().
+/// Returns the array. If --only chooses words in it, returns numbers in place of texts, see ChosenWords().
 vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstractArray* array)
 {
   const auto chosen = ChosenWords().find(array->GetName());

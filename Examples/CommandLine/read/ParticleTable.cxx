@@ -413,8 +413,8 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   }
   const bool beginsStep = behind.empty() ||
     (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(behind[0], "ITEM:"));
-  // If the line behind a step does not begin another step, it is reported here if it has as many words as
-  // a particle, or if this step is the first one; otherwise, when the next step is read.
+  // The line behind a step must begin another step. If it does not, reports it here if it has as many words as
+  // a particle, or if this step is the first one; otherwise, reading the next step reports it.
   lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
     " is one more than the " + std::to_string(step.Count) +
       " particles that the step says it has; correct that number");

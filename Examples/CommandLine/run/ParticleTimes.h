@@ -58,7 +58,7 @@ public:
     const std::function<void(const Moment&)>& miss);
 
 private:
-  /// Lists the steps if the inputs are files of particles, not a list of files. Sets AreTold and StoredStep.
+  /// Lists the steps if the inputs are files of particles, not a list of files. Also sets AreTold and StoredStep, see below.
   std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
 
   /// Warns if neither the files nor the user tell the times of several steps, which tables need.
@@ -87,7 +87,7 @@ bool TellsOfDryPlaces(const std::string& warning);
 
 /// Writes a table that grows with each time; with --gauge-grid, only finish() writes. Returns false if some
 /// steps failed, but not all; throws if all failed. addRows() appends a moment's rows to the text; only
-/// the first process' text is written. The message at the end names `what`, then what finish() returns.
+/// the first process' text is written. The message at the end is made of `what`, the number of steps, and the text from finish().
 bool MakeTable(Sharing& sharing, const std::string& what,
   const std::function<void(ParticleTimes::Moment& moment, std::string& text)>& addRows,
   const std::function<std::string()>& finish);

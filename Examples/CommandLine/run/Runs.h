@@ -24,8 +24,8 @@ struct Job;
 /// The runs of the program. All return false if a step failed, after its error was printed, and throw UsageError or
 /// std::runtime_error with one sentence.
 
-/// Extracts the surface. Writes it and the table of its pieces: both, or none. Then writes the widened particles, the
-/// statistics and the picture, each by itself.
+/// Extracts the surface. Writes the surface and the table of its pieces: both, or none. Then writes the widened particles,
+/// the statistics and the picture, one after the other; an error ends the run.
 bool MakeSurface(Sharing& sharing);
 
 /// Makes a surface, or an image of a projection, for each time of a film; and, if the output is a .pvd
@@ -71,8 +71,8 @@ struct Run
 Run Extract(Sharing& sharing, vtkPointSet* particles, std::string& pieces, double time = 0.0,
   const std::string& progress = "");
 
-/// Includes the surface's colours in the scale, and warns of arrays that the surface's file cannot
-/// hold and, with `hasHints`, of a period that is not used.
+/// Widens the range of `colors` for the surface. Adds warnings to the run: of arrays that the surface's
+/// file cannot hold and, with `hasHints`, of a period that the data tell, but the run does not use.
 void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* particles,
   ColorScale& colors, bool hasHints);
 

@@ -36,8 +36,8 @@ std::string SurfaceFileEndings();
 /// lines with all arrays. Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
-/// Adds a mark to the bytes of an XML file: the file is a step of a film, which another film may
-/// replace.
+/// Adds a mark to the bytes of an XML file. The mark says that the file is a step of a film, so that
+/// another film may replace the file.
 std::string MarkedStep(std::string bytes);
 
 /// Whether the file has the mark of MarkedStep().

@@ -226,8 +226,8 @@ def by_name(file, pairs):
 
 
 class Body(NamedTuple):
-    """The points of a file at one of its times. times: the times of all steps; None if the file is no film. is_mesh: whether there are
-    cells, but no vertices; None if there are no cells."""
+    """The points of a file at one of its times. times: the times of all steps; None if the file has no steps. is_mesh: whether the points
+    belong to a mesh, that is, there are cells, but no vertices; None if there are no cells."""
     points: np.ndarray
     arrays: Dict[str, np.ndarray]
     time: Optional[float] = None
@@ -262,7 +262,7 @@ def ending_of(path):
 
 
 def inflate(path, data, least=None):
-    """Unpacks gzipped data: all of them, or at most the first `least` bytes. Returns other data as they are, whole."""
+    """Unpacks gzipped data: all bytes or, if `least` is given, at most the first `least` bytes. Returns data that are not gzipped unchanged."""
     if not data.startswith(b"\x1f\x8b"):
         return data
     found, left = [], 1000 * len(data) + 1024  # Deflate cannot pack more densely.

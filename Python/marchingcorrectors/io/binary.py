@@ -140,8 +140,8 @@ class BinaryFile:
             begin += size + 8
 
     def read_arrays(self, blocks, with_masses):
-        """Yields (label, RawArray) of each array whose size fits. Raises FileError if the size of MASS, or of an array that all types have, does
-        not fit. Skips other arrays."""
+        """Yields (label, RawArray) of each array whose size fits the number of particles. If a size does not fit, skips the array; but raises
+        FileError if the array is MASS, or one that all types have."""
         counts = {**dict.fromkeys(("POS", "VEL", "ID", "POT", "ACCE"), sum(self.counts)), "MASS": with_masses}
         for label, (begin, size) in blocks:
             count, columns = counts.get(label, self.counts[0]), 3 if label in VECTORS else 1

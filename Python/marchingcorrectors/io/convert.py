@@ -189,7 +189,7 @@ class Outputs:
                 os.fsync(file.fileno())
 
     def beside(self, path):
-        """Returns the path to write to: in a new folder beside the target, with its name; for a device or a pipe, the target itself."""
+        """Returns the path to write to: the name of `path` in a new folder beside the target; for a device or a pipe, `path` itself."""
         with _sentences(path):
             target = os.path.realpath(path)
             if os.path.exists(target):

@@ -74,7 +74,7 @@ class Part(NamedTuple):
 
 
 def load(parts, name):
-    """Returns the array `name` of all parts, one part after the other. Parts without `keep` are read straight into the result."""
+    """Returns the array `name` of all parts, one part after the other. Parts whose `keep` is None are read straight into the result."""
     result, begin = None, 0
     for part in parts:
         with h5py.File(part.file, "r") as file:

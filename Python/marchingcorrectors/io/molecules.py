@@ -22,8 +22,8 @@ def rows_of(file, lines, begin, count):
 
 
 def take_step(file, step, steps):
-    """Returns the content of the chosen step, and the keywords of Body that tell its time and all times. steps: pairs (time, content); if the time is
-    None, the step's number counts."""
+    """Returns the content of the chosen step, and the keywords of Body that tell its time and all times. steps: pairs (time, content). If
+    a time is None, the number of the step takes its place."""
     times = [float(i) if time is None else time for i, (time, _) in enumerate(steps)]
     i = choose_step(file, step, times)
     return steps[i][1], {"time": times[i], "times": times}

@@ -306,8 +306,8 @@ public:
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * Finds the fluid's box. Leaves out a few particles (at each side at most 8, or 0.1 % if this
-   * is more) if they are farther from the box of the other particles than that box is long. Returns
+   * Finds the fluid's box. Leaves out a few particles (at each side at most 8, or 0.1 % if this is
+   * more) whose distance from the box of the other particles exceeds that box's longest side. Returns
    * false, and writes nothing, if no particle is fluid. densest: see GetNextDensest(); may be null.
    * Collective if processes share a run.
    */

@@ -108,7 +108,7 @@ vtkSPHDerivatives::vtkSPHDerivatives()
 
 vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particles) const
 {
-  // A file may have another array with this name: made with another kernel, or by the solver.
+  // If the particles have an array of this name, such as the solver's own, the new one gets another.
   const auto name = [this, particles](std::string free)
   {
     while (!this->ReplaceArrays && particles->GetPointData()->HasArray(free.c_str()))

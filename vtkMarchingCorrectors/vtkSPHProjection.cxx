@@ -59,8 +59,8 @@ mcor_view vtkSPHProjection::MakeView() const
   return view;
 }
 
-// Finds the image's extent. Does not report errors, because Process() will. Origin and spacing come
-// with the data.
+// Tells the extent of the image; origin and spacing come with the data. Does not report errors, because
+// Process() will report them.
 int vtkSPHProjection::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

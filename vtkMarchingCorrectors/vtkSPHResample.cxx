@@ -172,8 +172,8 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-// Origin and spacing come with the data. Dimensions that are not set follow the shape of Bounds, or
-// of the present fluid's box: cells are about cubes. If the box is flat, there is one layer of points.
+// Tells the extent of a volume; origin and spacing come with the data. Chooses dimensions that are not set
+// so that cells are about cubes in Bounds or in the fluid's box; a flat box gets one layer of points.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

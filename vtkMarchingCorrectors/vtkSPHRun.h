@@ -68,7 +68,7 @@ public:
   Made Taken;  // particles among the cells of a mesh; how: whether any rank has vertices
   Made Joined; // blocks as one set of particles; how: the fluid array, which may be a block
 
-  /** The signature of the last run's data, and how often the data have changed: equal versions mean equal data. */
+  /** The signature of the last run's data, and their version, which counts changes. Equal versions mean equal data. */
   struct Kept
   {
     std::vector<std::uint64_t> Signature;
@@ -180,8 +180,8 @@ public:
    * processes of the particles. home: the data set of this process that gets results; may be null.
    */
   virtual void Return(vtkPointData*, vtkDataSet*) {}
-  /** In a shared run, lists for each interpolated array the first particle of all processes whose
-   * value is not finite, or -1. A run of one process changes nothing. */
+  /** In a shared run, lists for each interpolated array the first particle with a value that is not
+   * finite, among all processes' particles, or -1. A run of one process changes nothing. */
   virtual void FindNotFinite(const vtkSPHParticles&, std::vector<std::int64_t>&) {}
   /** Adds to the statistics of the run how much each process has done. */
   virtual void AddShares() {}

@@ -215,9 +215,9 @@ class Watch:
             self.filter.AbortExecuteOn()
 
     def run(self, stop_at=None):
-        """Returns the seconds of the whole run; two gaps; and the seconds from report number stop_at, which cancels the run, to the end of
-        the run (0: not cancelled). The gaps are the longest one between reports by the clock, and the longest one in processor seconds,
-        each as (seconds, the phase in which the gap begins)."""
+        """Returns three values: the seconds of the whole run; the longest gap between reports by the clock, and the longest gap in processor
+        seconds, each as (seconds, the phase in which the gap begins); and the seconds from report number stop_at, which cancels the run, to
+        the end of the run (0: not cancelled)."""
         self.reports, self.stop_at = [], stop_at
         self.filter.AbortExecuteOff()
         self.filter.Modified()
@@ -232,9 +232,9 @@ class Watch:
 
 def cancel(benchmark):
     """Measures how long a run goes on after it is cancelled. A run stops at its next report of progress. All kernels are
-    compiled beforehand. For each kind of run, prints the longest time without a report, by the clock and in processor seconds of all
-    threads, and the phase in which it began; this time is the least over several runs. Then prints how long a run went on after
-    the report that cancelled it: the longest time over 8 such reports."""
+    compiled beforehand. For each kind of run, prints the longest time without a report (in the run where it was shortest), by the clock
+    and in processor seconds of all threads, and the phase in which this time began. Then prints how long a run went on after the
+    report that cancelled it: 8 runs are cancelled, each at another report, and the longest time counts."""
     from marchingcorrectors import vtkMarchingCorrectors
     out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
     size, side = (64, 32) if benchmark.quick else (512, 256)

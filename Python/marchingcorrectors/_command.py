@@ -147,8 +147,8 @@ def make_parser(command):
 
 
 def find_words(given, names, particles, command):
-    """Returns {keyword: value} for a function, from the command's options. names: the function's own keywords. With --dp, the
-    particles tell the dimension, and whether the volume follows from --dp."""
+    """Returns {keyword: value} for a function, from the command's options. names: the function's own keywords. With --dp, finds
+    the dimension from the particles, and takes the volume from --dp unless the particles have volumes, or masses and densities."""
     words = {}
     for option in options_of(command):
         keyword, value = keyword_of(option), getattr(given, option[2:].replace("-", "_"), None)

@@ -144,7 +144,8 @@ class Film:
             self._save()
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
-        """Returns {name: (type, values)} of `velocities` and of a primvar for each array. of_points: takes an array's values at the prim's points."""
+        """Returns {name: (type, values)}: the velocities, and a primvar for each array. of_points: a function that takes from an array the values at
+        the prim's points."""
         values = {}
         if velocities is not None:
             values["velocities"] = ("Vector3f", of_points(velocities) / self.slow)

@@ -141,8 +141,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns two values: the vtkCellArray with the vertex cells of poly data, or with all cells of an unstructured grid, else None;
-    the type of each cell. The types of the vtkCellArray's own cells come first; other cells may have 0."""
+    """Returns two values. The first is the vtkCellArray with the vertices of poly data, or with all cells of an unstructured grid, else None.
+    The second is the type of each cell: first of the cells in this vtkCellArray, then of others, whose type may be 0."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])

@@ -24,8 +24,8 @@ VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHHaveVertices(vtkDataObject* data);
 
 /**
  * Returns the particles of a data set, or of each of its blocks, in data of the same class.
- * haveVertices: any block of any process has vertices. If so, and if a block has other cells than
- * vertices, its points without a vertex are nodes of a mesh, and are left out. Cell arrays of vertices
+ * haveVertices: whether any block of any process has vertices. If so, and a block also has other
+ * cells, the block's points without a vertex are nodes of a mesh, and are left out. Cell arrays of vertices
  * become arrays of the vertices' points, unless the points have an array of the same name, or a point
  * that stays has no vertex. Returns the data set itself if nothing changes.
  */

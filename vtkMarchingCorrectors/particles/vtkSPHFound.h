@@ -17,7 +17,7 @@ class vtkFieldData;
 class vtkMultiProcessController;
 class vtkPointSet;
 
-/** Names of arrays, or words for a vector that is made of arrays; empty: not found. FluidValue: the value in the array Fluid that marks fluid. */
+/** Names of arrays, or words for a velocity from several arrays; empty: none found. FluidValue: marks fluid in the array Fluid. */
 struct vtkSPHFound
 {
   std::string SmoothingLength, Volume, Mass, Density, Velocity, Fluid;

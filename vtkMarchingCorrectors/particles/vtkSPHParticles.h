@@ -54,8 +54,8 @@ std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPoin
 
 /**
  * Unless the choice names an array as the fluid's, finds the array and the value that mark fluid,
- * and writes them into the choice. UnusedType becomes a sentence if an array seems to mark fluid but
- * is not used. `first` becomes the array to contour if it is not null and has no name. Collective.
+ * and writes them into the choice. If an array seems to mark fluid but is not used, choice.UnusedType
+ * says so. If `first` is not null and has no name, it becomes the array to contour. Collective.
  */
 void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequest* first,
   const mcor_ranks* ranks);
@@ -87,7 +87,7 @@ public:
 
   /**
    * Takes what vtkMarchingCorrectors::FindWidening() has found: factors of the smoothing lengths, and
-   * volumes or null. The factors become the core's last attribute; Interpolated does not list them.
+   * volumes or null. The factors become the core's last attribute, which is not in Interpolated.
    */
   void TakeWidening(vtkDataArray* factors, vtkDataArray* volumes);
 

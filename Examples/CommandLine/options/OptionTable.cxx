@@ -161,7 +161,7 @@ void SetSolids(Job& job, Text option, Text text)
   job.Surface->SetSolids(solids);
 }
 
-/// Sets the contour values and the free-surface values, of which a surface uses one kind, and the level of gauges and fluxes.
+/// Sets contour values and free-surface values (a surface uses only one kind), and the level of gauges and fluxes.
 void SetIsoValues(Job& job, Text option, Text text)
 {
   const std::vector<double> values = ToNumbers(option, text);

@@ -72,8 +72,8 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// Checks the counts that an XML element, and the elements inside it, declare. A number of components, times `points`,
-/// may be at most `most`. points: the number of points of the last piece.
+/// Checks the counts that an XML element, and the elements inside it, declare. Each may be at
+/// most `most`; a number of components is multiplied by `points` before, the number of points of the last piece.
 void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
   for (int i = 0; i < element->GetNumberOfAttributes(); ++i)
@@ -278,8 +278,8 @@ protected:
   {
     const std::string file = this->FileName ? this->FileName : "";
     const std::size_t size = file.empty() ? this->InputString.size() : BytesOf(file)->size();
-    // A byte holds at most eight values, which are bits. A packed byte may hold more: 7,000 zeros with
-    // LZMA, the best packer that VTK reads.
+    // The smallest values are bits, so a byte holds at most eight values. A packed byte may hold more:
+    // 7,000 zeros with LZMA, the best packer that VTK reads.
     const double most = static_cast<double>(size) * (root->GetAttribute("compressor") ? 1e4 : 8.0);
     double points = 0.0;
     CheckXmlSizes(file, most, root, points);

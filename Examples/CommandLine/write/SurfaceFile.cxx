@@ -134,8 +134,8 @@ struct Column
   std::string Name;
 };
 
-/// Adds a column for each component of an array. For a vector, the mark and a letter follow the name;
-/// if there are not enough letters, the mark and a number.
+/// Adds a column for each component of an array. If there are several components, the columns' names are
+/// the array's name, the mark and a letter; or a number, if there are not enough letters.
 void AddColumns(std::vector<Column>& columns, vtkAbstractArray* array, const std::string& name,
   const std::string& mark, const std::vector<std::string>& letters = {})
 {

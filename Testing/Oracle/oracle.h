@@ -101,11 +101,11 @@ extern "C"
     const particle_set* particles, oracle_kernel kernel, oracle_kind kind, double scale);
   void oracle_free_field(oracle_field* field);
 
-  /* Fills particles->volume. With mass and density: mass / density. With mass alone: m_j / (sum_k m_k W(x_j - x_k, h_j)
-   * F_j). With neither: 1 / (sum_k W(x_j - x_k, h_j) F_j). W is three-dimensional. F_j corrects for neighbours on one
-   * side only: F_j = 1 for solids; else F_j = 1 + 5/3 variance h_j^2 |g|^2 / n^2, with the kernel's variance, n = sum_k
-   * h_k^d W(x_j - x_k, h_j) and g = the sum of h_k^d grad W over the fluid + t times the same sum over the solids. t
-   * from 0 to 1 makes |g| least. Ignored solids are left out of the sums. */
+  /* Fills particles->volume. With mass and density: mass / density. With mass alone: m_j / (F_j sum_k m_k W(x_j - x_k,
+   * h_j)). With neither: 1 / (F_j sum_k W(x_j - x_k, h_j)). W is three-dimensional. F_j corrects these sums if
+   * neighbours are on one side only. F_j = 1 for solids, else 1 + 5/3 variance h_j^2 |g|^2 / n^2. variance: the
+   * kernel's; n = sum_k h_k^d W(x_j - x_k, h_j); g: the sum of h_k^d grad W over the fluid, plus t times this sum over
+   * the solids; t, from 0 to 1, makes |g| least. Ignored solids are left out of all sums. */
   void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int dimensions,
     const double* mass, const double* density);
 
@@ -129,8 +129,8 @@ extern "C"
    * W, which changes where the value is iso, not at the mean's poles. */
   double oracle_side(const oracle_field* field, const oracle_sample* sample, double iso);
 
-  /* Writes the eigenvalues, in ascending order, of the symmetric part of sum V (x_j - x) (outer product) grad W, over
-   * the particles that count in trim_weight. The lowest one is the boundary eigenvalue of Marrone et al. */
+  /* Sums V (x_j - x) (outer product) grad W over the particles that count in trim_weight. Writes the eigenvalues of
+   * this matrix's symmetric part in ascending order. The lowest one is the boundary eigenvalue of Marrone et al. */
   void oracle_boundary_eigenvalues(
     const oracle_field* field, const double point[3], double eigenvalues[3]);
 

@@ -52,8 +52,8 @@ static double oracle_quadratic(double q, double* slope)
   return 5.0 / (4.0 * ORACLE_PI) * (0.1875 * q * q - 0.75 * q + 0.75);
 }
 
-/* Returns the sum of factor[k] (R - k - q)^n over k = 0, 1, 2 with R - k > q, divided by norm * pi. R: reach, the
- * support radius; n: power. */
+/* R: reach, the support radius in h. Returns the sum of factor[k] (R - k - q)^power over k = 0, 1, 2 with R - k > q,
+ * divided by norm * pi. *slope: its derivative in q. */
 static double oracle_spline(
   double reach, int power, const double factor[3], double norm, double q, double* slope)
 {

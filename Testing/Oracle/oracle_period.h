@@ -3,8 +3,8 @@
 #ifndef oracle_period_h
 #define oracle_period_h
 
-/* Has what oracle_reference.c and oracle_case.c need for periodic boxes: images as particles, the
- * cells of one period, and the surface joined with itself at opposite sides. */
+/* Periodic boxes for oracle_reference.c and oracle_case.c: adds images as particles, finds the cells of one period, and
+ * joins the surface with itself at opposite sides. */
 
 #include "mcor.h"
 #include "mesh_check.h"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests the core's sentences in mcor_says.def: each is used, its slots have words in every interface, and compilers check its formats.
+"""Tests the core's sentences in mcor_says.def: each is used, interfaces have words for its slots {...}, and compilers check its formats.
 
 test_says.py SOURCES OUTPUT COMPILER
 
@@ -27,7 +27,7 @@ NOT_IN_PROGRAM = {"blocks"}
 
 
 def words_of_program():
-    """Returns {member: option}: the core's member for each option, as the rows of Options.def give it."""
+    """Returns {member of a struct of the core: the program's option that sets it}, from the rows of Options.def."""
     rows = (SOURCES / "Examples/CommandLine/options/Options.def").read_text(encoding="utf-8").split('\nOPTION("--')[1:]
     words = {"estimate_smoothing_length": "--smoothing-length estimate"}  # OptionWord does the same.
     for row in rows:

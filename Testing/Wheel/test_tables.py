@@ -571,7 +571,7 @@ class AsTheProgram(Case):
         self.assertEqual(io.read(self.at("a.csv")).arrays["id"].tolist(), [2 ** 53 + 1, 2 ** 53])
 
     def test_tilted_cells(self):
-        """Positions in tilted cells equal those worked out by hand. Commands refuse a tilted period; functions warn of it."""
+        """Positions in tilted cells equal positions worked out by hand. Commands refuse a tilted period; functions warn of it."""
         for case in ("a tilted box", "a tilted box of one period", "vectors"):
             self.at("a.dump").write_text(CASES[case][1])
             low = np.array([1.0, 2, 3]) if case == "vectors" else np.zeros(3)

@@ -90,8 +90,7 @@ class Test(unittest.TestCase):
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 public, re.M))
         self.assertGreater(len(names), 100)
-        # The wheel's filter lacks the methods for ranks, and those that serve only C++ and the panels of the C++
-        # plugin.
+        # The wheel's filter lacks methods for ranks, and methods that only C++ or the panels of the C++ plugin use.
         names -= {"GetNextBounds", "GetNextDensest", "GetNextEstimate", "SetWord"}
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [])  # What is lacking belongs in the plugin's XML, or in MarchingCorrectorsFilter.py.

@@ -241,7 +241,8 @@ static void test_first_rows(void** state)
 /* ---- cells beside finer ones ---- */
 
 /* Checks side a, b of the triangles a, b, c and b, a, d of a cell. If the side lies in an undivided face or a quarter
- * of a divided face, both triangles must lie in this face: the cell beyond may have the side, too. Unit: half cells. */
+ * of a divided face, both triangles must lie in this face, because the cell beyond may have the side, too. Unit: half
+ * cells. */
 static void check_inner_side(
   const double* a, const double* b, const double* c, const double* d, uint32_t split)
 {

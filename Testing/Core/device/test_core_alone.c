@@ -52,7 +52,7 @@ static void test_names_what_is_missing(void** state)
   }
 }
 
-/* A call that no device can do fails, and does not change later calls. */
+/* If no device can do a call, the call fails, and later calls give the same as before. */
 static void test_goes_on(void** state)
 {
   CORE_CONTEXT context = NULL;

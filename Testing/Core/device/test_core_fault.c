@@ -352,7 +352,7 @@ static void test_filled(void** state)
   sweep_room(*state, &filled, 23, 100);
 }
 
-/* Lets calls fail in runs with a box, a period and walls; each run has steps that the others lack. */
+/* Lets calls fail in runs with a box, a period, caps or walls. Each run has steps that the other runs lack. */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;

@@ -364,8 +364,8 @@ static void test_locked(void** state)
   mcor_release(context, &buffer);
 }
 
-/* For a device with memory of its own, particles are staged in portions, and arrays whose elements are all the same are
- * not copied. No bit changes. */
+/* If a device has memory of its own, particles are copied to it in portions, and arrays of equal elements are not
+ * copied. No bit changes. */
 static void test_device_apart(void** state)
 {
   CORE_SET set = core_make_block(70, 0.3, 3, core_slope);

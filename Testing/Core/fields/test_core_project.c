@@ -310,8 +310,8 @@ static void test_brute_force(void** state)
   }
 }
 
-/* Checks that a box sets the image's frame and chooses particles along the line of sight, and that images of a period
- * count like copies of the particles. */
+/* Checks that a box sets the image's frame and chooses particles along the line of sight, and that a period gives the
+ * same image as copies of the particles. */
 static void test_box(void** state)
 {
   CORE_SET set = core_make_random(60, 1, 0.05, 0.2, 8), copies = particle_set_make(60 * 45);

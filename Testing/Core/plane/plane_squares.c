@@ -227,8 +227,8 @@ static int64_t plane_edge_of(plane_squares* s, double u, double v)
   return -1;
 }
 
-/* Checks that lines lead from edge to edge as the squares say or, with MCOR_TOPOLOGY_FIELD, checks the
- * number of ambiguous squares. Edges at which rounding may decide are left out. */
+/* Checks that lines lead from edge to edge as the squares say; edges at which rounding may decide are left out. With
+ * MCOR_TOPOLOGY_FIELD, checks the number of ambiguous squares instead. */
 static void plane_compare_lines(
   const plane_squares* s, const int64_t* of, const mcor_surface* surface)
 {

@@ -34,7 +34,7 @@ static int caps_side_of(const caps_case* c, const mcor_surface* s, int32_t p, in
   return -1;
 }
 
-/* Returns the distance from p to q along side i; it is positive if the inside is on the left. */
+/* Returns the distance from p to q along side i: positive if the inside is on the left of this way, else negative. */
 static double caps_length(const caps_case* c, const mcor_surface* s, int i, int32_t p, int32_t q)
 {
   const int along = 1 - i / 2;

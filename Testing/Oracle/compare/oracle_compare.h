@@ -25,8 +25,8 @@ extern "C"
     oracle_field field;
     oracle_lattice lattice;
     oracle_limits limits;
-    /* The largest minus the smallest scalar of fluid particles. If all scalars are equal, it is the scalar's magnitude;
-     * if all are 0, it is 1. For the free surface, it is greatest_weight. */
+    /* The range is the largest minus the smallest scalar of fluid particles. If all scalars are equal, the range is
+     * their magnitude; if all are 0, 1. For the free surface, it is greatest_weight. */
     double range;
     double greatest_weight; /* of the nodes, at least 1 */
     double unit;            /* roundoff of the working precision */

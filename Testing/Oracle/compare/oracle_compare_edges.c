@@ -38,9 +38,9 @@ static void compare_note_edge(compare_state* state, const char* what, const latt
 
 /* ---- vertices ---- */
 
-/* Finds the crossed edges, ends included, on which a point may lie, and which still lack a vertex. (If compare_pinched,
- * an edge needs two vertices.) Returns how many edges it found. *axis: the axis of the edge inside which the point
- * lies; -1: the point is on a node; -2: it is on no line of the lattice. */
+/* Finds the crossed edges, ends included, on which a point may lie, and which still lack a vertex. A pinched edge (see
+ * compare_pinched) needs two vertices. Returns how many edges there are. *axis: the axis of the edge inside which the
+ * point lies; -1: the point is on a node; -2: it is on no line of the lattice. */
 static int compare_candidates(
   compare_state* state, const double point[3], int64_t candidates[COMPARE_CANDIDATES], int* axis)
 {

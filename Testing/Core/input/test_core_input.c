@@ -127,6 +127,8 @@ static void test_options(void** state)
   ARGUMENT("OPTION_ILLEGAL|{h_scale}|above 0", call.options.h_scale = 0);
   ARGUMENT("OPTION_ILLEGAL|{wall_share}|below 1", call.options.wall_share = 1);
   ARGUMENT("OPTION_ILLEGAL|{node_threshold}|at least 0", call.options.node_threshold = -1);
+  ARGUMENT(
+    "OPTION_ILLEGAL|{cube_size}|inf|at least 0 and finite", call.options.cube_size = INFINITY);
   ARGUMENT("OPTION_ILLEGAL|{iteration_limit}|0|1 |255", call.options.iteration_limit = 0);
   ARGUMENT("OPTION_ILLEGAL|{iteration_limit}|256|255", call.options.iteration_limit = 256);
   ARGUMENT("ISO_COUNT|-1", call.options.iso_count = -1);

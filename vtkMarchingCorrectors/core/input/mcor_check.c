@@ -84,7 +84,8 @@ static mcor_status mcor_check_number(
       most, sizeof most, " and %s %g", legal.excludes_high ? "below" : "at most", legal.high);
   }
   return mcor_fail(context, MCOR_INVALID_ARGUMENT, MCOR_SAY(OPTION_ILLEGAL), member, value,
-    legal.excludes_low ? "above" : "at least", legal.low, most,
+    legal.excludes_low ? "above" : "at least", legal.low,
+    isfinite(value) || *most ? most : " and finite",
     *words ? ", or the number, from -1 down, of one of these: " : "", words);
 }
 

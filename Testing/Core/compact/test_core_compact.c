@@ -340,4 +340,26 @@ static void many_slices(void** state)
   assert_true(core_hash(&one) == core_hash(&with));
 }
 
-CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps, many_slices)
+/* With these periods, the edges of cubes hardly differ, and are shorter than the device's cube.
+ * Vertices move as far as in cubes whose edges are equal, and as long as the device's. */
+static void unequal_edges(void** state)
+{
+  const double iso = 0.1, period[6] = { 0, 12, 0, 12, 0, 12 };
+  const int length[3] = { 12, 12, 12 };
+  CORE_SET set = core_make_period(length, 4);
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_period_options(&iso, period);
+  options.compact = 1;
+  options.cube_size = 0.76;
+  options.periodic[1] += 1.2e-5;
+  options.periodic[3] += 3.6e-5;
+  CORE_SURFACE unequal = core_extract(*state, &input, &options);
+  options.periodic[1] = options.periodic[3] = 12;
+  CORE_SURFACE equal = core_extract(*state, &input, &options);
+  const double mean = unequal.statistics.correction_mean, usual = equal.statistics.correction_mean;
+  CORE_CHECK(unequal.triangle_count == equal.triangle_count && fabs(mean - usual) < 1e-3 * usual,
+    unequal.triangle_count, equal.triangle_count, mean, usual);
+}
+
+CORE_MAIN(core_set_up, core_tear_down, surfaces, boxes_in_period, away_from_caps, many_slices,
+  unequal_edges)

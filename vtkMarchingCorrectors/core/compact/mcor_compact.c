@@ -180,6 +180,28 @@ static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
   bunches->slice_left[slice] = to - first;
 }
 
+/* The correction tells how many cubes it moved an appended vertex. Makes this a share of the edge
+ * that the vertex's node names, as for other vertices. */
+static mcor_status mcor_share_moves(const mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  const size_t count = (size_t)(bunches->point_count - bunches->vertex_count),
+               real = context->cl.real_size, first = (size_t)bunches->vertex_count * real;
+  const mcor_buffer* linear = &context->mesh.linear;
+  void* moved = malloc(count * real + 1);
+  mcor_status status = mcor_allocated(context, moved);
+  MCOR_THEN(status, mcor_read(context, linear, first, moved, count * real));
+  for (size_t i = 0; i < count && status == MCOR_OK; ++i)
+  {
+    const int axis = bunches->points[(size_t)bunches->vertex_count + i].node[3] & 3;
+    mcor_put_real(
+      context, moved, (int64_t)i, mcor_get_real(context, moved, (int64_t)i) / bunches->edge[axis]);
+  }
+  MCOR_THEN(status, mcor_append_bytes(context, &context->mesh.linear, first, moved, count * real));
+  free(moved);
+  return status;
+}
+
 /* Removes triangles that vanished. Copies each appended vertex that is still in use to the place of
  * the vertex that it replaces. */
 static mcor_status mcor_end_bunches(mcor_bunches* bunches)
@@ -235,7 +257,8 @@ static mcor_status mcor_end_bunches(mcor_bunches* bunches)
     { &mesh->gradient, 4 }, { &mesh->vertex_weight, 1 },
     { &mesh->means, context->attributes.count } };
   mcor_buffer replaced = { 0 };
-  mcor_status status = mcor_write(context, &replaced, bunches->pairs, count * sizeof(cl_int));
+  mcor_status status = mcor_share_moves(bunches);
+  MCOR_THEN(status, mcor_write(context, &replaced, bunches->pairs, count * sizeof(cl_int)));
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     MCOR_THEN(status,

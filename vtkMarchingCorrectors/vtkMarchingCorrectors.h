@@ -462,12 +462,12 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkSPHParticles& mine, vtkPolyData* output);
   bool TakeWidening(vtkRun& run, vtkSPHParticles& input);
-  /** Finds Widening and, if volumes are computed, WideningVolume of this process's particles, and the core's statistics. */
+  /** Finds the arrays Widening and, if volumes are computed, WideningVolume of this process's particles; and statistics. */
   bool FindWidening(vtkRun& run, vtkSPHParticles& mine, vtkPointData* found,
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkSPHParticles& input, mcor_options options,
     mcor_surface& surface, vtkPolyData* output);
-  /** largestFloat: the greatest of all ranks' vtkMarchingCorrectorsOutput::FindLargestFloat(). */
+  /** largestFloat: the greatest result of vtkMarchingCorrectorsOutput::FindLargestFloat() on any rank. */
   void WarnOf(const vtkSPHParticles& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
   bool Take(vtkRun& run, vtkSPHParticles& input);

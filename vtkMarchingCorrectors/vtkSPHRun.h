@@ -115,7 +115,7 @@ public:
   /** Merges ranges, each a least and a greatest value, over all processes. */
   virtual void MergeRanges(double*, int /*count*/) {}
   using Named = std::pair<std::string, std::vector<double>>;
-  /** Returns the lists of all processes, also this one's, in the same order everywhere. */
+  /** Returns the lists of all processes, this one included. All processes get them in the same order. */
   virtual std::vector<std::vector<Named>> Gather(const std::vector<Named>& mine)
   {
     return { mine };
@@ -136,7 +136,7 @@ public:
   /**
    * Collects the particles, sets HasFluid, and notes which arrays were found. Warns if there is
    * no fluid, and names the `consequence`, such as "no surface"; else warns if a setting has no effect.
-   * Returns false, after an error, if an array is not usable. Without particles only returns true.
+   * Returns false, after an error, if an array is not usable. Without particles, does nothing and returns true.
    */
   bool Accept(vtkSPHParticles& particles, const std::string& consequence);
   /**

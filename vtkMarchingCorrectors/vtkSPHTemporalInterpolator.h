@@ -90,8 +90,8 @@ public:
 
   ///@{
   /**
-   * If the velocities do not fit the motion between the last two steps: the motion of the
-   * particles, divided by the motion that their velocities give. Else 0.
+   * The motion of the particles between the last two steps, divided by the motion that their
+   * velocities give. 0 if the two fit, or if they were not compared.
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);

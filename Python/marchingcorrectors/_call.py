@@ -244,7 +244,7 @@ class Finder(Arguments):
         self.ranges.append((self.texts[-1], 1, 1))
 
     def complete(self, wants, options, nothing):
-        """Sets the input and the options. nothing: the warning's words if there is no fluid; None makes this an error."""
+        """Sets the input and the options. If there is no fluid, warns in the words of `nothing`; raises an error if `nothing` is None."""
         self.find(self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges, **self.request)
         if self.error:
             raise InvalidArgument(say("LENGTH_MISSING") if self.error.code == "NO_SMOOTHING_LENGTH" else self.error)

@@ -114,7 +114,7 @@ def reader_of(option, argument):
 
 
 def add_option(parser, option, is_required):
-    """Adds an option with the words of the program's table."""
+    """Adds an option of the shell program, described as in the program's help."""
     argument, about, _, _ = c.PROGRAM[option]
     words = {"help": (about or ", ".join(WORDS[option])).replace("%", "%%"), "dest": option[2:].replace("-", "_"), "default": None}
     if option == "--no-attributes":

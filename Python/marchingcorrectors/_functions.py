@@ -261,7 +261,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
     and these volumes is, bit for bit, the surface made with widen, for the same cube_size and level_limit=0.
 
     iso: the greatest iso value of the free surface; None: the factors are for the surface of a scalar.
-    return_volume: True: the volumes, too.
+    return_volume: whether the volumes are returned, too.
 
     The other arguments are those of isosurface().
 
@@ -383,8 +383,7 @@ FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, r
 
 
 def _as_section(section, name, units):
-    """Returns a section's shape, as a number of mcor_section_shape; its points (n, 3), of a disc the centre and the normal; and its radius, 0 unless
-    the section is a disc."""
+    """Returns a section's shape (a number of mcor_section_shape); its points, (n, 3), or a disc's centre and normal; and a disc's radius, or 0."""
     def numbers(values, shape):
         array = contiguous(values, "section").astype(np.float64)
         if array.shape != shape:

@@ -144,8 +144,7 @@ class Film:
             self._save()
 
     def _common(self, arrays, velocities, of_points=lambda array: array):
-        """Returns {name: (type, values)}: the velocities, and a primvar for each array. of_points: a function that takes from an array the values at
-        the prim's points."""
+        """Returns {name: (type, values)} of the velocities, and of a primvar for each array. of_points(array): the values at the prim's points."""
         values = {}
         if velocities is not None:
             values["velocities"] = ("Vector3f", of_points(velocities) / self.slow)

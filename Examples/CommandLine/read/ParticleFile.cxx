@@ -249,7 +249,7 @@ void DropCopies(vtkPolyData* part)
   part->GetPointData()->ShallowCopy(arrays);
 }
 
-/// Splits NAME#N, step N of the file NAME, into name and number, unless a file has the whole name.
+/// Splits NAME#N, which means step N of the file NAME, into NAME and N; but not if a file is called NAME#N.
 std::pair<std::string, std::size_t> StepOf(const std::string& name)
 {
   std::error_code error;

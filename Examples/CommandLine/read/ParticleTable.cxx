@@ -337,8 +337,8 @@ std::vector<std::size_t> PositionsOf(const std::string& file, Step& step)
   return shares;
 }
 
-/// Returns the period for the field data: six bounds, 0 for axes without a period. If a side with a period is
-/// tilted, returns the cell's three sides as vectors, in which vtkSPHFindPeriod() finds a tilted cell, not a period.
+/// Returns the period for the field data: six bounds, 0 for axes without a period. If a side with a period is tilted,
+/// returns the cell's three sides as vectors; vtkSPHFindPeriod() then finds a tilted cell in place of a period.
 std::vector<double> PeriodOf(const Step& step)
 {
   std::vector<double> period(6);

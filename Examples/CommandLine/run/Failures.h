@@ -41,8 +41,8 @@ void KeepWatchOfCrashes();
 /// unless `device` is the built-in one, names the cache's folder if there is one.
 std::string FaultsOfDrivers(const std::string& device);
 
-/// Sets the sentence for a crash while this object lives: "FAILURE: ...; HINT". isSilent: only this
-/// sentence then reaches standard error, where libraries would write messages about a damaged file.
+/// While this object lives, a crash prints the sentence "FAILURE: ...; HINT". isSilent: standard error
+/// gets only this sentence then, not the messages that libraries write about a damaged file.
 class Activity
 {
 public:

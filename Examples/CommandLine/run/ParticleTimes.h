@@ -52,7 +52,7 @@ public:
   /// Makes all files that will be read known to IsSource(), and checks the outputs.
   void CheckFiles(const std::vector<std::string>& outputs) const;
 
-  /// Works on each time. outputs: the file of each time, or empty. If a time fails, says so, calls
+  /// Calls work() for each time. outputs: the file of each time, or empty. If a time fails, prints why, calls
   /// miss(), goes on with the other times, and returns false at the end.
   bool ForEach(const std::vector<std::string>& outputs, const std::function<void(Moment&)>& work,
     const std::function<void(const Moment&)>& miss);

@@ -215,7 +215,7 @@ def add_velocity(read, names):
 
 
 def by_name(file, pairs):
-    """Returns {name: thing}. If several things have the same name, the last one counts, as in VTK, with a warning."""
+    """Returns {name: thing}. If several things have the same name, warns, and takes the last one, as VTK does."""
     found, twice = {}, None
     for name, thing in pairs:
         twice = twice or (name if name in found else None)

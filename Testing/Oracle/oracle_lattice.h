@@ -3,9 +3,9 @@
 #ifndef oracle_lattice_h
 #define oracle_lattice_h
 
-/* Marching Cubes by brute force, on cubes as fine as the particles or on cubes of one size. Takes each particle, and
- * all nodes and cells of all bricks that it reaches. Finds which edges are crossed and how faces join the crossings.
- * Makes no triangles. */
+/* Marching Cubes by brute force, on cubes as fine as the particles or on cubes of one size. Takes all nodes and cells
+ * of all bricks that a particle reaches. Finds which edges are crossed and how faces join the crossings. Makes no
+ * triangles. */
 
 #include "oracle.h"
 

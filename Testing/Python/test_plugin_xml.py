@@ -95,8 +95,8 @@ class TestPluginXml(unittest.TestCase):
         label = self.main.get("label").lower()
         for word in ("sph", "isosurface", "free surface", "contour"):
             self.assertIn(word, label)
-        # Quick search takes the first label, in alphabetical order, that begins with the typed text. For "sph" this must be this filter's label,
-        # not that of ParaView's SPH Dataset Interpolator or of another filter of the plugin.
+        # Quick search takes the first label, in alphabetical order, that begins with the typed text. For "sph" it must find this filter,
+        # not ParaView's SPH Dataset Interpolator or another filter of the plugin.
         labels = [proxy.get("label").lower() for proxy in self.proxies]
         self.assertGreater(len(labels), 8)
         self.assertEqual(min(each for each in labels + ["sph dataset interpolator"] if each.startswith("sph")), label)

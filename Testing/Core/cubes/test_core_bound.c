@@ -260,7 +260,7 @@ static void test_bound(void** state)
   }
 }
 
-/* So many equal particles lie in one place that rounding errors add up: each step rounds in the same direction. */
+/* Many equal particles lie in one place. Each step of a sum rounds in the same direction, so errors add up. */
 static void test_many_particles(void** state)
 {
   static const struct

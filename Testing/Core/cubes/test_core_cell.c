@@ -111,8 +111,8 @@ static int crossed_edges(int cube_case)
   return count;
 }
 
-/* Checks ambiguous faces. A bit of `joined` says that a face joins its corners above iso. On such a face, each corner
- * below iso must be cut off by one triangle side; on any other ambiguous face, each corner above iso. */
+/* Checks ambiguous faces. If a face's bit in `joined` is set, its corners above iso are joined, so one triangle side
+ * must cut off each corner below iso. Else one triangle side must cut off each corner above iso. */
 static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
 {
   uint8_t side[24][24] = { { 0 } };

@@ -7,7 +7,7 @@
 #include "core_fixture.h"
 #include "mcor_tree.h"
 
-/* `measure` sets these anew for each test. The context keeps a pointer to the options. */
+/* measure() sets these two variables for each test. The context keeps a pointer to the options. */
 static mcor_input input;
 static mcor_options options;
 

@@ -209,7 +209,7 @@ static void test_uniform_in_a_plane(void** state)
       {
         turned.points[p / 3 * 3 + to[p % 3]] = cases[i].section.points[p];
       }
-      /* For axis 1, `to` is an odd permutation: a rectangle's normal, the cross product of its edges, changes sign. */
+      /* For axis 1, `to` is an odd permutation, so a rectangle's normal (a cross product of edges) changes sign. */
       const double sign = turned.kind == MCOR_SECTION_RECTANGLE && axis == 1 ? -1 : 1;
       mcor_flux_reading r = flux_of(*state, &input, &options, &turned);
       check_reading(

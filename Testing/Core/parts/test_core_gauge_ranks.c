@@ -222,8 +222,8 @@ static void test_same_bits(void** state)
   }
 }
 
-/* Any number of ranks gives the fluxes of one process: through sections that cross all ranks' boxes, reach beyond the
- * period, lie in few boxes, or lie outside the fluid. */
+/* Any number of ranks gives the same fluxes as one process. Sections cross all ranks' boxes, reach beyond the period,
+ * lie in few boxes, or lie outside the fluid. */
 static void test_same_fluxes(void** state)
 {
   static const double points[SECTIONS][9] = { { -7, -6.5, 1, 7, -6, 2, -7, 7, -1 },

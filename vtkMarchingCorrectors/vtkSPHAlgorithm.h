@@ -284,8 +284,8 @@ public:
   ///@{
   /**
    * Leave out particles whose value in this point array is not from `low` to `high`, as if they
-   * were not there. An array may have several ranges: a value in any one of them passes. A particle
-   * must pass for each array. None by default.
+   * were not there. An array may have several ranges: a value in any one of them passes. If there
+   * are several arrays, a particle must pass in all of them. None by default.
    */
   void AddOnly(const char* name, double low, double high)
   {

@@ -10,9 +10,9 @@
  *     LINE              points from Point1 to Point2, with their distance from the first as arc_length
  *     VOLUME            a vtkImageData of Bounds
  *
- * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the
- * middle along the longest side of the fluid's box, and the volume is this box, all with a margin
- * of 3 % of this side. A slice of particles in a plane always lies in their plane. Where there is
+ * With FitBounds (the default) the slice goes through the middle of the fluid, the line goes through
+ * the middle along the longest side of the fluid's box, and the volume is this box. All three have a
+ * margin of 3 % of the longest side. A slice of particles in a plane always lies in their plane. Where there is
  * no fluid, arrays are NaN, see SetNaNOutside(), and a slice has no quads, see SetOnlyFluid().
  *
  * Blocks of composite data always form one set of particles. If the controller has several

@@ -167,7 +167,7 @@ def add_values(data, count, chosen, made):
 
 def take_vertices(data, have=None):
     """Returns the particles of a data set, or of each of its blocks, as vtkSPHTakeVertices() in C++ does, but as a vtkPolyData
-    without cells. Returns the data set itself if nothing has to change. have: whether any block has vertices; None: finds it out."""
+    without cells. Returns the data set itself if nothing has to change. have: whether any block has vertices; None: looks for them."""
     if have is None:
         have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):

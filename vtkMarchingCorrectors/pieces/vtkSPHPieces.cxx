@@ -88,8 +88,8 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, vtkDataArray* isoValues, const dou
   }
 }
 
-// Returns the root of the piece of `point`, a point that stands for the whole piece. Sets Root[point]
-// to it.
+// A piece's root is the point that stands for the whole piece. Returns the root of the piece of
+// `point`, and stores it in Root[point].
 vtkIdType vtkSPHPieces::FindRoot(vtkIdType point)
 {
   const auto passOver = [this](vtkIdType one) // leaves the next point out of the way to the root

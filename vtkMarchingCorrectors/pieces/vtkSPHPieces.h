@@ -52,9 +52,9 @@ public:
   std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses the point
 
   /**
-   * Finds, for each point, the innermost piece around it that has this iso value and a volume; -1
-   * if this piece is a cavity, or if there is no such piece. without: for each point a piece to
-   * ignore; may be empty.
+   * Finds, for each point, the innermost of the pieces around it that have this iso value and a
+   * volume. -1: there is no such piece, or the innermost one is a cavity. without: for each point a
+   * piece to ignore; may be empty.
    */
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
     double isoValue, const std::vector<vtkIdType>& without = {}) const;

@@ -40,7 +40,7 @@ bool IsBelow(const double* a, const double* b, double y, double z)
 
 /**
  * Returns 1 if the ray from the point leaves through this face, -1 if it enters, 0 if it misses the
- * face. *at: the face's x on the line of the ray.
+ * face. *at: the x at which the line of the ray goes through the face's plane.
  */
 int Crossing(const Face& face, const Triple& point, double* at)
 {

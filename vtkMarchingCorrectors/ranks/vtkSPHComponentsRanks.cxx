@@ -82,7 +82,7 @@ vtkSmartPointer<vtkPolyData> GatherSurface(vtkMultiProcessController* controller
  * Returns the piece of each point, or of each triangle, of this rank; -1: the piece is left out.
  * pieces: on the first rank, the pieces of all ranks' points or triangles. The other ranks ask the
  * first rank, so that only one rank must hold all pieces. Also replaces the global ids in
- * `data`: numbers the points or triangles whose pieces stay anew; all others get -1. Collective.
+ * `data`: gives new numbers to points or triangles whose pieces stay, and -1 to others. Collective.
  */
 Ids Return(vtkSPHRanks& ranks, vtkDataSetAttributes* data, const Ids& pieces)
 {

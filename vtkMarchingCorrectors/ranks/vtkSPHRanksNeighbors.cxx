@@ -98,8 +98,8 @@ vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
 
 /**
  * Gets the particles of other ranks that lie in spheres of these radii around this rank's particles,
- * and appends them to `arrays`. order: the new order of this rank's particles. Particles
- * whose spheres reach other ranks' boxes come first; returns their number. Collective.
+ * and appends them to `arrays`. Returns the number of particles whose spheres reach
+ * other ranks' boxes; these come first in `order`, the new order of this rank's particles. Collective.
  */
 vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
   const std::vector<double>& radii, vtkSPHRanksArrays& arrays, vtkIdList* order)

@@ -73,7 +73,7 @@ void CheckSize(const std::string& file, double most, View name, double value, do
 }
 
 /// Checks the counts that an XML element, and the elements inside it, declare. Each may be at
-/// most `most`; a number of components is multiplied by `points` before, the number of points of the last piece.
+/// most `most`; a number of components at most `most` / `points`. points: the number of points of the last piece.
 void CheckXmlSizes(const std::string& file, double most, vtkXMLDataElement* element, double& points)
 {
   for (int i = 0; i < element->GetNumberOfAttributes(); ++i)
@@ -422,7 +422,7 @@ std::vector<double> NumberInVtk(const std::string& file, const std::vector<std::
     }
   }
   // If an XML file has field data at its end, a tag at its beginning has the least and the greatest
-  // value of each array; for a single finite number, both are the number itself.
+  // value of each array. If an array holds a single finite number, both values are this number.
   for (const std::string& name : names)
   {
     const std::size_t at = text.find("Name=\"" + name + "\"");

@@ -62,7 +62,7 @@ private:
   std::vector<Step> GivenSteps(std::vector<std::string>& warnings);
 
   /// Warns if neither the files nor the user tell the times of several steps, which tables need.
-  /// Names the time between steps if velocities tell it.
+  /// The warning names the time between steps if velocities tell it.
   void CheckTold();
 
   /// Returns the particles at a time. If this throws std::runtime_error, call Reset(), so that

@@ -28,8 +28,8 @@ struct Job;
 /// the statistics and the picture, one after the other; an error ends the run.
 bool MakeSurface(Sharing& sharing);
 
-/// Makes a surface, or an image of a projection, for each time of a film; and, if the output is a .pvd
-/// file, this list of the steps. If a step fails, makes the others.
+/// Makes a surface, or an image of a projection, for each time of a film. If the output is a .pvd file,
+/// also makes this list of the steps. If a step fails, makes the other steps.
 bool MakeFilm(Sharing& sharing);
 
 /// Measures, at each time of the input, the free surface along lines; or the flux through sections, and the fluxes' integrals

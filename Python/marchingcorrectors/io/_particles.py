@@ -14,7 +14,7 @@ from .._arrays import QUANTITIES, SUMMED, Found, list_named
 from .._library import Error, InvalidArgument, lib, say, warn
 from .._options import BOUNDS, did_you_mean
 
-# A solver's name for its kernel, with only its letters and digits, begins with one of these keys; the first that fits counts. PySPH calls
+# A solver's name of its kernel, reduced to letters and digits, begins with one of these keys. If several keys fit, the first counts. PySPH calls
 # Wendland C2 WendlandQuintic.
 KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",

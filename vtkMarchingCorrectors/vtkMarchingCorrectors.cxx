@@ -273,8 +273,8 @@ bool vtkMarchingCorrectors::FindWidening(
     return false;
   }
   statistics = widening.statistics;
-  // A process without particles of its own has 0 as its least length. Infinity leaves it out of the
-  // minimum.
+  // A process without particles of its own has 0 as its least length. This is replaced by infinity, so
+  // that such a process does not change the minimum.
   const double least = statistics.smoothing_length_min;
   double range[2] = { least > 0.0 ? least : std::numeric_limits<double>::infinity(), 0.0 };
   sums->MergeRanges(range, 1);

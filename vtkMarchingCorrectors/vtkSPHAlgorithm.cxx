@@ -130,7 +130,7 @@ vtkSmartPointer<vtkDataObject> vtkSPHAlgorithm::NewOutput(
     isLike ? like->NewInstance() : vtkDataObjectTypes::NewDataObject(className.c_str()));
 }
 
-// Makes an output of the input's class if the output has blocks, else of GetOutputClassName().
+// Makes an output. Its class is the input's if the output has blocks, else GetOutputClassName().
 vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

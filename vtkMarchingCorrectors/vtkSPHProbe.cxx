@@ -306,7 +306,7 @@ int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-// Each piece of the points needs all particles. Ranks that share a run send them to each other.
+// Each piece of the points needs all particles. If ranks share a run, they exchange particles.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {

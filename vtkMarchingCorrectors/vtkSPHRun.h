@@ -152,7 +152,7 @@ public:
   virtual void PlacePoints(vtkDataSet* points) { this->Points = points; }
   /**
    * Sends particles and points to the processes that need them. Returns the particles that came to
-   * this process, after Collect(); null if they are not usable. A run of one process returns
+   * this process, with their arrays collected; null if these are not usable. A run of one process returns
    * `mine`.
    */
   virtual vtkSPHParticles* Share(vtkSPHParticles& mine) { return &mine; }

@@ -51,8 +51,8 @@ MASK = (1 << 21) - 1
 
 
 def split_bricks(positions, lengths, cube):
-    """Returns a list with one entry for each level: the keys (one number each) of the bricks (4 x 4 x 4 cubes) that smaller
-    bricks replace. The entry of level 0, the smallest bricks, is empty."""
+    """Returns a list with one entry for each level of bricks (4 x 4 x 4 cubes): the keys, one number each, of the level's bricks that are
+    replaced by smaller bricks. Level 0 has the smallest bricks, so its entry is empty."""
     sides = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     level = np.floor(np.log2(lengths / lengths.min() * (1 + 1e-12))).astype(int)
     split = [np.empty(0, np.int64)]

@@ -94,7 +94,7 @@ def colored(actor, array, table):
 
 
 def panel(actors, text, place, size, camera, up):
-    """Makes a white part of the window, with text of this size at this place in pixels."""
+    """Makes a part of the window: the actors on white, and the text in letters of this size at this place, in pixels."""
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     caption = vtkTextActor()

@@ -206,7 +206,7 @@ def plane_bands(values=(-1, 1000, 2000, 3000)):
 
 
 def smooth():
-    """Plots the free surface, the smooth free surface, and splashsurf's with cubes of half a particle radius."""
+    """Plots three surfaces: the free surface, the smooth free surface, and the one of splashsurf, with cubes of half a particle radius."""
     particles = dam_break()
     water = particles.extract_points(particles["ParticleType"] == 0)
     made = smoothed_by_splashsurf(water.points, float(np.median(water["Mass"] / water["Density"])) ** (1 / 3))

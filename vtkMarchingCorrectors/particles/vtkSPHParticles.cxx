@@ -40,7 +40,7 @@ vtkSmartPointer<vtkDataArray> CopyOf(const mcor_named& made)
   return copy;
 }
 
-/** Returns the index of the requested array in `data`; -1 if the request has a name, or if `data` lacks the array. */
+/** Returns the index in `data` of an array that was requested without a name; -1: requested by name, or not in `data`. */
 int IndexOf(const vtkSPHRequest& request, vtkPointData* data)
 {
   int index = request.Name.empty() && request.Array ? data->GetNumberOfArrays() - 1 : -1;

@@ -100,7 +100,7 @@ public:
     return true;
   }
 
-  /** Call this where other ranks call Reduce() or Gather(). If `stops` is set, those calls do nothing. Returns true if no rank stops. */
+  /** Call this where other ranks call Reduce() or Gather(). If `stops` is set, the other ranks' calls do nothing. Returns true if no rank stops. */
   bool Stop(bool stops) { return vtkSPHAwaitRanks(this->Controller, !stops); }
 
   /** Merges each range, a least and a greatest value, over all ranks. An empty range goes from infinity to -infinity. */

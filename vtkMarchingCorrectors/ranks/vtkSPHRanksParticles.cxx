@@ -250,10 +250,7 @@ Form FormOf(vtkAbstractArray* array, const char* name, int role)
   return Form(name, array->GetDataType(), labels, role);
 }
 
-/**
- * Returns the form of the positions, then the forms of the point arrays that have a name and a value
- * for each point. Leaves out vtkGhostType.
- */
+/** Returns the form of the positions, then of each point array that has a name and a value for each point, except vtkGhostType. */
 std::vector<Form> Describe(vtkPolyData* particles)
 {
   vtkDataArray* positions = particles->GetPoints()->GetData();

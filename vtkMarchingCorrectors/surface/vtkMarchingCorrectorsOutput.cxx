@@ -32,8 +32,8 @@ namespace
 /// An array that varies on the surface by less than this share of its range at the particles is noise.
 constexpr double LeastShare = 0.03;
 
-// Adds a text named `arrayName` that holds the array's name; it is empty if no array was used. If
-// all particles had one value, adds a number named `name` that holds this value.
+// Adds a text named `arrayName`: the name of the quantity's array, or "" if no array was used. If all
+// particles had one value, adds a number named `name`: this value.
 void AddQuantity(
   vtkFieldData* data, const char* arrayName, const char* name, const mcor_array& array)
 {

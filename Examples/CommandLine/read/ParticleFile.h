@@ -30,8 +30,8 @@ void AddNumbers(vtkFieldData* data, const std::string& name, const std::vector<d
 /// Returns the endings of the files that ReadParticles knows: ".vtp, .vtu, ... or .ply".
 std::string ParticleFileEndings();
 
-/// The words that --only NAME=WORD chooses, by array name. An array of texts with such a name is read as numbers: 1, 2,
-/// ... for these words in their order, 0 for other words.
+/// The words that --only NAME=WORD chooses, by array name. An array of texts that has a listed name is read as numbers:
+/// 1, 2, ... for the words in their order, 0 for other words.
 std::map<std::string, std::vector<std::string>>& ChosenWords();
 
 /// Reads files that each hold a part of the particles, and joins the parts, see ReadSets() and

@@ -83,7 +83,7 @@ double NumberIn(const char* bytes)
   return static_cast<double>(value);
 }
 
-/// Moves the element's rows from the beginning of `bytes` into its columns. isSwapped: not in this machine's byte order.
+/// Moves the element's rows from the beginning of `bytes` into its columns. isSwapped: the rows are not in this machine's byte order.
 void TakeRows(const std::string& file, View& bytes, Element& element, bool isSwapped)
 {
   std::vector<std::size_t> sizes;

@@ -133,8 +133,8 @@ bool BeginsWithNumbers(View text, double count)
   return true;
 }
 
-/// Checks the counts in a legacy file. A line with counts begins with a word; attributes get their count from an
-/// earlier line. The arrays of a field have lines with a name, two counts and a type.
+/// Checks the counts in a legacy file. A line with counts begins with a word. Attributes have the count that an
+/// earlier line gives. The arrays of a field have lines with a name, two counts and a type.
 void CheckLegacy(const std::string& file, View text)
 {
   using Words = std::set<std::string>;

@@ -65,8 +65,8 @@ private:
   /// The warning names the time between steps if velocities tell it.
   void CheckTold();
 
-  /// Returns the particles at a time. If this throws std::runtime_error, call Reset(), so that
-  /// nothing is left of the failure.
+  /// Returns the particles at a time. If this throws std::runtime_error, call Reset(), which
+  /// drops what the failure has left.
   Sharing::Particles At(double time, std::vector<std::string>& warnings);
   void Reset();
 

@@ -23,8 +23,8 @@ namespace
 
 #if MCOR_HAS_RANKS
 /// Begins and ends MPI, for the processes of mpirun that share a job. There is one object per
-/// process. All processes read the pieces of a list, or the files of a snapshot; the first reads any other
-/// file. All write the pieces of a .pvtp file; the first writes the whole surface to any other file.
+/// process. All processes read the pieces of a list, or the files of a snapshot; the first process reads
+/// any other file. All write the pieces of a .pvtp file; the first process writes the whole surface to any other file.
 class RankSession : public Sharing
 {
 public:

@@ -35,7 +35,7 @@ public:
   /// Whether this process writes the files and prints the messages.
   bool IsFirst() const { return this->GetRank() == 0; }
 
-  /// Does work on all processes; the work of each may differ.
+  /// Calls work() on all processes. Each process may have another `work`.
   virtual void OnAll(const std::function<void()>& work) { work(); }
 
   void OnFirst(const std::function<void()>& work)

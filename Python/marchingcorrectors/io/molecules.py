@@ -165,7 +165,7 @@ STYLES = {"atomic": "id type x y z", **dict.fromkeys(("bond", "angle", "molecula
 
 
 def read_gro(path, step):
-    """Reads columns of fixed width: the distance between two decimal points is the width of a number."""
+    """Reads a .gro file, whose columns have fixed widths. The width of a number is the distance between two decimal points."""
     lines, at, steps = lines_of(path), 0, []
     while at < len(lines):
         if not lines[at].strip() and all(not line.strip() for line in lines[at:]):

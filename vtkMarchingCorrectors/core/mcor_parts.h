@@ -130,12 +130,12 @@ extern "C"
    * than this distance; see mcor_options.globals. smoothing_length: of the particle, unscaled. */
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
-  /* Returns how far from a box all particles are needed, however short their supports are, because
-   * the particles that reach the box depend on these neighbours; 0: no neighbours are needed. All
-   * lengths have the same unit. computes_volumes: whether the call computes volumes; widest:
-   * options.widen for mcor_widen, 0 for other calls; reach: how far a particle that reaches the box
-   * may be away from the box, 0 if no particle reaches it; margin: at least two cubes, because
-   * particles and the box are rounded. */
+  /* Particles whose supports meet a box may depend on neighbours whose supports do not. Returns a
+   * distance: all particles up to this far from the box are needed, however short their supports
+   * are; 0: no such neighbours are needed. All lengths have the same unit. computes_volumes: if the
+   * call computes volumes; widest: options.widen for mcor_widen, 0 for other calls; reach: the
+   * greatest distance from the box of a particle whose support meets the box, 0 if there is none;
+   * margin: at least two cubes, because particles and the box are rounded. */
   double mcor_reach_around(const mcor_options* options, int computes_volumes, double widest,
     double reach, double margin);
 

@@ -15,8 +15,8 @@
 mcor_status mcor_compact(mcor_context* context);
 
 /* MCOR_COMPACT_RING: vertices in a box depend on cells up to this many cells away from the box. It
- * is the sum of 4 cells for whether a vertex is merged, 2 for each round of taking bunches apart, 4
- * for whether a vertex moves, and 1 for the normals of triangles. */
+ * is a sum: whether a vertex is merged depends on 4 cells; each round, in which bad merged vertices
+ * are taken apart again, on 2; whether a vertex moves, on 4; normals of triangles, on 1. */
 #define MCOR_COMPACT_ROUNDS 2
 #define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 9)
 

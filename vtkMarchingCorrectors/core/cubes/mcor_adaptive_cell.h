@@ -56,7 +56,8 @@ typedef struct mcor_adaptive_loop
   MCOR_TYPE(uint) facets[MCOR_ADAPTIVE_VERTICES];
 } mcor_adaptive_loop;
 
-/* Returns the difference between the numbers of neighbouring positions along an axis. */
+/* Positions are numbered x + 3 y + 9 z. Returns by how much the number grows from one position to
+ * the next one along an axis. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_step(int axis)
 {
   return axis == 0 ? 1 : axis == 1 ? 3 : 9;

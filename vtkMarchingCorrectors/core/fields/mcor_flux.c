@@ -27,10 +27,11 @@
 /* A sum has room for this many times the section's area, times the greatest speed and density if
  * they are in the sum. Weights below 0, as M'4 has, make sums a little larger than this product. */
 #define MCOR_FLUX_ROOM 8
-/* A piece is accurate enough if its two results differ by at most MCOR_FLUX_TOLERANCE times the
- * scale in mcor_settle_piece times an area. This area is the piece's area or, if larger,
- * MCOR_FLUX_SMALL times the geometric mean of the piece's area and of the section's area near
- * particles, because errors of many small pieces cancel. */
+/* A piece is accurate enough if the results of two ways to integrate differ by at most
+ * MCOR_FLUX_TOLERANCE * area * scale. The scale is the integrand's: 1, the piece's greatest speed,
+ * or this speed times the greatest density. The area is the piece's or, if larger, MCOR_FLUX_SMALL
+ * times the geometric mean of the piece's area and the section's area near particles, because
+ * errors of many small pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-6
 #define MCOR_FLUX_SMALL 0.125
 /* MCOR_FLUX_DEPTH: how often a cell is halved at most. MCOR_FLUX_UNCLEAR_DEPTH: how often a cell is

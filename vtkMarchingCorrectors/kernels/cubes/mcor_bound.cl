@@ -45,8 +45,8 @@ void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Finds the least and greatest w of a particle in a box of half size e. dx, dy, dz: from the box's
- * centre to the particle. */
+/* Finds the least and the greatest value of a particle's w at the points of a box. e: half the size
+ * of the box; dx, dy, dz: from the box's centre to the particle. */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {

@@ -179,13 +179,13 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 }
 
 /* One work-item = one of `count` regions from `first` on. Reads the particles that reach the
- * region, and the states of blocks. In a plane (depth 0) or with several levels, first tests
- * whether the range of the particles' values decides. Writes the states of the region's bricks
- * (with several levels, of its leaves). If some of these bricks are uncertain, requests slots for
- * them, and appends the region to `list`: the regions of this call stand from entry `first` on, in
- * any order. list_count: how many entries each level has. With several levels, a region includes
- * the nodes on its far sides. Bricks above a plane, and bricks without a node of a cell in the box
- * first_x to last_z, are void. */
+ * region, and the states of blocks. In two dimensions (depth 0) or with several levels, first
+ * tests whether the range of the particles' values tells the region's side of the iso value. Writes
+ * the states of the region's bricks (with several levels, of its leaves). If some of these bricks
+ * are uncertain, requests slots for them, and appends the region to `list`: the regions of this
+ * call stand from entry `first` on, in any order. list_count: how many entries each level has. With
+ * several levels, a region includes the nodes on its far sides. Bricks without a node of a cell in
+ * the box first_x to last_z are void, and so are bricks with z > 0 in two dimensions. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, MCOR_BOX_PARAMS,

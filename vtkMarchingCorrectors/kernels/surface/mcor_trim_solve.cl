@@ -44,12 +44,13 @@ real mcor_trim_fraction(real wa, real wb, real w)
 }
 
 /* One work-item = one cut vertex. Writes the vertex's position, as the nearer end's node and an
- * offset. The weights are taken as linear along the mesh edge, from its inner end (the one that is
- * not trimmed) to its other end. The position is the first place where the weight sinks to the
- * threshold or, for a Shepard mean, the fluid's own weight sinks to MCOR_LEAST_FLUID. The position
- * stays away from the ends, because cut vertices of several edges would meet at an end. The
- * position's bits do not depend on the order of vertices. Writes the vector to the inner end in
- * place of the gradient; its fourth number is whether the fluid's own weight decided. */
+ * offset. trimmed_by: the number that decides whether a vertex is trimmed. It and the fluid's own
+ * weight are taken as linear along the mesh edge, from its inner end (the one that is not trimmed)
+ * to its other end. The position is the first place where trimmed_by sinks to the threshold or, for
+ * a Shepard mean, the fluid's own weight sinks to MCOR_LEAST_FLUID. The position stays away from
+ * the ends, because cut vertices of several edges would meet at an end. The position's bits do not
+ * depend on the order of vertices. Writes the vector to the inner end in place of the gradient; its
+ * fourth number is whether the fluid's own weight decided. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)

@@ -347,6 +347,10 @@ void core_extend_program(mcor_context* context, const char* source)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
+  if (strcmp(cl->platform_name, "built in") == 0)
+  {
+    fail_msg("%s", "This test adds kernels, which needs a driver's compiler: set MCOR_DEVICE=pocl");
+  }
   /* A kernel that calls mcor_topology_* or mcor_cell_* needs the sources of the lattice's programs. Any other kernel
    * needs the sources of the field's programs. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");

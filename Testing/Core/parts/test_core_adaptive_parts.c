@@ -36,22 +36,41 @@ static void smooth_surfaces(void** state)
   core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
 }
 
-/* Checks a noisy scalar of particles of all sizes side by side: levels change everywhere, and some
- * edges are pinched (have two vertices). */
+/* Checks a noisy scalar of particles that grow outwards: many triangles are of level 1, loops of vertices lie flat in faces
+ * between levels, and some edges are pinched (have two vertices). */
 static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;
-  CORE_SET set = core_make_random(4000, 14, 0.3, 3, 7);
+  CORE_SET set = core_make_graded(12, 0.4);
+  uint64_t seed = 7;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = 2 * random_unit(&seed) - 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] += 0.6 * set.smoothing_length[i] * (random_unit(&seed) - 0.5);
+    }
+  }
   mcor_input input = core_input(&set);
   input.volume = (mcor_array){ 0 };
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   options.cube_size_factor = 1.0;
-  options.h_scale = 0.7;
-  options.node_threshold = 0.6;
-  options.vertex_threshold = 0.62;
+  options.h_scale = 0.55;
+  options.node_threshold = 0.45;
+  options.vertex_threshold = 0.47;
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
+  int64_t pinched = 0;
+  for (int64_t i = 0; i < surface.point_count; ++i)
+  {
+    pinched += surface.point_keys[3 * i + 1] % 2 == 1;
+  }
+  CORE_CHECK(surface.statistics.triangles_of_level[1] > 500 && pinched > 0 &&
+      surface.statistics.flat_loops > 0,
+    surface.statistics.triangles_of_level[1], pinched, surface.statistics.flat_loops);
   core_check_cuts(*state, "noise, computed volumes", &input, &options);
   options.topology = MCOR_TOPOLOGY_FIELD;
   core_check_cuts(*state, "topology by field", &input, &options);
+  input.volume = core_array(set.volume, 1);
   options.preview = 1;
   options.sph_kernel = MCOR_M_PRIME_4;
   core_check_cuts(*state, "M'4, preview", &input, &options);

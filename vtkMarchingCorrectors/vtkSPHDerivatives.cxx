@@ -108,7 +108,7 @@ vtkSPHDerivatives::vtkSPHDerivatives()
 
 vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particles) const
 {
-  // If the particles have an array of this name, such as the solver's own, the new one gets another.
+  // Returns the name of a new array: another one if the particles have an array of this name.
   const auto name = [this, particles](std::string free)
   {
     while (!this->ReplaceArrays && particles->GetPointData()->HasArray(free.c_str()))

@@ -335,8 +335,8 @@ class Particles(Arguments):
         return "" if self.fluid is None else f"{name_of(self.fluid)} = {self.found.fluid_value:g}"
 
     def sums(self, name, function, *more):
-        """Returns the sums over neighbours, (particles,), that Arguments.sums() returns. Keeps them for the next run, which computes new
-        ones only if the particles, or the options on which the sums depend, have changed."""
+        """Returns what Arguments.sums() returns. Keeps these sums for the next run, which computes new ones only if the particles, or the
+        options on which the sums depend, have changed."""
         key = (*self.signatures()[0], self.options.sph_kernel, self.options.dimension, *self.options.periodic, *more)
         if self.choice.Made.get(name, (None,))[0] != key:
             self.choice.Made[name] = key, self._wrap(name, super().sums(name, function, *more))

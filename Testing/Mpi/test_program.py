@@ -125,8 +125,8 @@ class Program(unittest.TestCase):
         self.check_point_data(alone, ranks)
 
     def test_same_file(self):
-        """Compares surfaces including the order of points and triangles: trimmed, with two iso values, periods, boxes, caps and walls. The
-        first process reads the files of walls. Walls here lie at places of fluid particles."""
+        """Several processes write the same bytes as one. The surfaces are trimmed at two iso values, with a period, a box, caps or walls.
+        The first process reads the files of walls. Walls here lie at places of fluid particles."""
         write_pieces(PARTICLES, self.folder.name, 4)
         walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
         trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]

@@ -270,8 +270,8 @@ void vtkSPHRanksSpace::Cut(
   this->Cut(middle, end, first + lower, count - lower, high);
 }
 
-// A rank has no box if only some ranks get boxes, and an empty box if there are too few bricks to
-// share. The core needs a box, so it then gets one at a place where there is nothing.
+// Some ranks may have no box, and some boxes are empty if there are too few bricks to share. The
+// core needs a box, so it gets one where there is nothing in both cases.
 vtkSPHRanksBox vtkSPHRanksSpace::GetBox(int rank) const
 {
   const vtkSPHRanksBox box =

@@ -27,8 +27,8 @@ static void check_equal(const double* values, const double* expected, int count,
   }
 }
 
-/* Compares the field at points with the field of the particles and all their images without a period, and with the
- * field at the same points moved by whole periods. */
+/* Evaluates a field with a period at points. Without a period, the particles and all their images must have the same
+ * field. With it, the points moved by whole periods must have the same values. */
 static void check_points(
   mcor_context* context, const particle_set* set, mcor_options* options, uint64_t version)
 {

@@ -150,7 +150,7 @@ mcor_status mcor_add_vertices(mcor_bunches* bunches)
   return MCOR_OK;
 }
 
-/* ---- All of it ---- */
+/* ---- The compact surface ---- */
 
 /* Moves the slice's triangles whose corners still differ to the front of the slice. Each corner
  * becomes the place of its vertex in the mesh. If the vertex is an appended one, the corner becomes

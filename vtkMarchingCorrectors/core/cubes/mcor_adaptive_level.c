@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes, level by level: kernels that evaluate the field for a level measure lengths in
- * cells of this level. */
+/* Adaptive cubes: launches of kernels that evaluate the field, level by level. In such a launch,
+ * lengths are in cells of its level. */
 
 #include "mcor_adaptive.h"
 

@@ -3,7 +3,8 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* Private to mcor_cl_*.c, which call OpenCL: errors, the profile, programs, kinds of drivers. */
+/* What the files that call OpenCL (mcor_cl_*.c) share: errors, the profile, programs, and kinds of
+ * drivers. Only these files include this header. */
 
 #include "mcor_internal.h"
 #include "mcor_native.h"

@@ -21,9 +21,9 @@
 /* A reduction over ranks takes this many numbers at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
-/* Reads mcor_splat.amount of particles, not yet divided by a pixel's area: V A or, for a mean, V B
- * A and V B; see mcor_splat for V, A and B. If the image shows the density, and masses are given, V
- * A is the mass. If the array of the weight B is the array of masses, V B is the mass. */
+/* Reads mcor_splat.amount of particles, not yet divided by a pixel's area; see mcor_splat for V, A
+ * and B. An integral needs V A, a mean needs V B A and V B. If masses are given, the mass replaces
+ * V A in an image of the density. If the weights B are the masses, the mass replaces V B. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {

@@ -95,9 +95,9 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_findings(context, &job->all);
 }
 
-/* Marks as absent all particles that do not reach the box or the points. Particles near enough to
- * be needed for volumes, pairs, nearest particles or widening factors stay. If no fluid reaches the
- * box or the points, the fluid at the place of the first sample stays. */
+/* Marks as absent all particles that do not reach the box or the probe's points. Particles near
+ * enough to be needed for volumes, pairs, nearest particles or widening factors stay. If no fluid
+ * reaches the box or the points, fluid at the place of the first sampled particle stays. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
   const mcor_options* options = context->run.options;

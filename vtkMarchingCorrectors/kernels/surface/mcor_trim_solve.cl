@@ -84,7 +84,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   gradient[vertex_count + i] = (real4)(-s * along.x, -s * along.y, -s * along.z, lacks);
 }
 
-/* How far a cut vertex may move, in cubes. REACH: from its linear cut, along each axis. STEP: in one
+/* How far a cut vertex may move, in cubes. REACH: from its linear cut along each axis. STEP: in one
  * iteration. */
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)

@@ -172,8 +172,8 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-// Tells the extent of a volume; origin and spacing come with the data. Chooses dimensions that are not set
-// so that cells are about cubes in Bounds or in the fluid's box; a flat box gets one layer of points.
+// Tells the extent of a volume; origin and spacing come with the data. If dimensions are not set, chooses
+// some for which the cells in Bounds, or in the fluid's box, are about cubes; a flat box gets one layer of points.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

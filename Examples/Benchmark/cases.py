@@ -412,8 +412,8 @@ class Model:
             self.parts[longest] *= 2
 
     def copies(self, depth, most=False):
-        """Returns how many copies a rank gets: the mean or, with `most`, the largest number. depth: the thickness of the shells. If
-        the whole box is cut into p parts along an axis, a part has a neighbour on each of its two sides with probability 1 - 1/p."""
+        """Returns how many copies of other ranks' particles a rank gets: the mean or, with `most`, the largest number. depth: the shells'
+        thickness. If the box is cut into p parts along an axis, a part has a neighbour on either side with probability 1 - 1/p."""
         grown = 1
         for side, parts in zip(self.sides, self.parts):
             grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))

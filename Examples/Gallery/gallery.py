@@ -57,7 +57,7 @@ def water(filter_, reader, array=None):
 
 
 def surface(reader, array=None, value=0, **properties):
-    """Returns the filter after a run with these properties: for an isosurface of the array; without an array, for the free surface."""
+    """With these properties, extracts an isosurface of the array or, without an array, the free surface. Returns the filter."""
     extract = water(vtkMarchingCorrectors(), reader, array)
     extract.SetFreeSurface(not array)
     if array:

@@ -76,7 +76,7 @@ def writing(path, mesh=None):
 
 
 def save_npz(path, **arrays):
-    """Writes the arrays from memory, because on a full disk NumPy closes its file twice, with a traceback."""
+    """Lets NumPy write to memory, and then writes the file. On a full disk, NumPy would close its file twice, with a traceback."""
     held = io.BytesIO()
     np.savez_compressed(held, **arrays)
     with writing(path):

@@ -141,8 +141,8 @@ def sets_of(data):
 
 
 def cells_of(points):
-    """Returns two values. The first is the vtkCellArray with the vertices of poly data, or with all cells of an unstructured grid, else None.
-    The second is the type of each cell: first of the cells in this vtkCellArray, then of others, whose type may be 0."""
+    """Returns the vtkCellArray with the vertices of poly data, or with all cells of an unstructured grid, else None; and the type of each
+    cell of the data. The types of the cells in the vtkCellArray come first; the type of other cells may be 0."""
     if isinstance(points, vtkPolyData):
         vertices = points.GetNumberOfVerts()
         return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])

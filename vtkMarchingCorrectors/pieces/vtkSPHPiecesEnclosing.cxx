@@ -135,8 +135,8 @@ private:
 };
 
 /**
- * Finds the pieces that enclose the point, except `without`. Replaces `innermost` by the one with the
- * smallest magnitude of the volume, if this is smaller than that of `innermost`, or if that is -1.
+ * Finds the pieces that enclose the point, except `without`. Of these pieces and the piece `innermost`
+ * (-1: none yet), the one whose volume has the smallest magnitude becomes `innermost`.
  */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)

@@ -405,7 +405,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   return particles;
 }
 
-// Keeps the arrays' order, computed arrays last, so that other ranks choose the same arrays by name.
+// Used arrays stay in their order, with computed arrays last, so that other ranks choose the same arrays by name.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used)
 {
   vtkSPHRanksArrays wanted;

@@ -413,8 +413,8 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   }
   const bool beginsStep = behind.empty() ||
     (find == FindXyzStep ? CountOf(lines.Get()) >= 0 : StartsWith(behind[0], "ITEM:"));
-  // The line behind a step must begin another step. If it does not, reports it here if it has as many words as
-  // a particle, or if this step is the first one; otherwise, reading the next step reports it.
+  // The line behind a step must begin another step. A line that does not is reported here if it has as many
+  // words as a particle, or if this step is the first one; otherwise, it is reported when the next step is read.
   lines.Check(beginsStep || (number > 0 && behind.size() != table.size()),
     " is one more than the " + std::to_string(step.Count) +
       " particles that the step says it has; correct that number");

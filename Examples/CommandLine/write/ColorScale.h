@@ -22,8 +22,8 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Unless the user gave a range, widens the colours' range so that it has the values on most of this data
-  /// set's area; if cells have the array, all values. A film's colours thus cover all steps so far. Throws
+  /// Unless the user gave a range, widens the colours' range until it has the values on most of this data set's
+  /// area or, for an array of cells, all values. A film's colours thus cover all steps so far. Throws
   /// std::runtime_error if the data set has points, but the array to colour by is missing or holds texts.
   void Include(vtkDataSet* data);
 

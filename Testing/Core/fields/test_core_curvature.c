@@ -164,7 +164,7 @@ static void reference(
 }
 
 /* Compares curvatures of each field with the reference, with solids among the fluid. In the last run, the kernel is a
- * product of one-dimensional kernels. One point in 100 may differ, because differences are wrong where W'' jumps. */
+ * product of one-dimensional kernels. One point in 100 may differ, because the reference is wrong where W'' jumps. */
 static void test_any_field(void** state)
 {
   CORE_SET set = core_make_block(9, 0.5, 3, core_slope);

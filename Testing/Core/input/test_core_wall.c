@@ -139,8 +139,8 @@ static void test_share(void** state)
   }
 }
 
-/* Checks that a measured wall share gives the same surface as this share set by hand. The share is measured after a
- * call with another share, whose search grid is kept, and with global values. */
+/* Checks that a measured wall share gives the same surface as this share set by hand. The measured share comes
+ * from a call that keeps the search grid of a call with another share, and from mcor_measure_globals. */
 static void test_measured(void** state)
 {
   CORE_SET set = make_tank();

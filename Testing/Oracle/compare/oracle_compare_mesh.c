@@ -10,8 +10,8 @@
 
 /* ---- vertices ---- */
 
-/* Returns the distance of vertex v from the surface f = iso, in cubes. It is |f - iso| / |gradient f| or, if this is
- * less, the smallest step to both sides along the edge within which f crosses iso. */
+/* Returns the distance of vertex v from the surface f = iso, in cubes. It is the smaller of |f - iso| / |gradient f|
+ * and the shortest step s such that f crosses iso between -s and s from the vertex along the edge. */
 static double compare_distance(
   const compare_state* state, int64_t v, int axis, const oracle_sample* sample)
 {

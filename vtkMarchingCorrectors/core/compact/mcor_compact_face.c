@@ -110,8 +110,8 @@ static void mcor_split_bunch(const mcor_bunches* bunches, int32_t first)
   }
 }
 
-/* Takes bad bunches apart. Only triangles around these bunches can be turned over by this, so each
- * round judges only these triangles again. */
+/* Takes bad bunches apart. Taking a bunch apart can turn over only triangles around the bunch, so
+ * each round judges only these triangles again. */
 mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
   const mcor_bunch_vertex* of = bunches->of;

@@ -36,7 +36,7 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   return MCOR_OK;
 }
 
-/* Unless a driver compiles, a first launch takes less than this, besides the kernel's own time. */
+/* A driver compiles if a kernel's first launch takes this much longer than the kernel itself. */
 #define MCOR_COMPILE_SECONDS 0.01
 
 /* Launches a kernel for the first time, alone, since drivers may compile it only now. The time of

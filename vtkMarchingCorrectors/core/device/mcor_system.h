@@ -34,10 +34,10 @@ bool mcor_system_bears_drivers(void);
  * open, as drivers do not survive being closed. */
 mcor_function mcor_system_opencl(void);
 
-/* Compiles a function of long loops three times, also for processors with AVX2 and with AVX-512, if
- * the loader can choose: this saves half of the instructions, or more. The bits are the same, as
- * every operation is rounded by itself. Sanitizers are not ready when the loader chooses, so with
- * them a function is compiled once. */
+/* If the loader can choose a version, compiles a function of long loops three times: for processors
+ * with AVX-512, with AVX2, and without both. This saves half of the instructions, or more. The bits
+ * are the same, as every operation is rounded by itself. Sanitizers are not ready when the loader
+ * chooses, so with them a function is compiled once. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&       \
   !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define MCOR_VECTOR_LOOPS __attribute__((target_clones("avx512f", "avx2", "default")))

@@ -38,8 +38,8 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* A measurement of triangles in slices. It finds the largest terms, which decide the units of exact
- * sums. If `sums` is set, it takes them from `all`, and adds terms and edge hashes exactly. */
+/* Measures triangles in slices. A first job finds the largest area and volume of a triangle, which
+ * decide the units of exact sums. A second job, with `sums` and these in `all`, finds the sums. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;

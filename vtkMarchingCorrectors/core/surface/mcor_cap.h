@@ -181,8 +181,8 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-/* The line along which a cut vertex is moved. Trimming makes cut vertices. Places on the line go
- * from 0 at one end to 1 at the other end. */
+/* Trimming makes cut vertices, and moves each of them along a line. Places on the line go from 0 at
+ * one end to 1 at the other end. */
 typedef struct mcor_cap_line
 {
   int32_t vertex; /* index among the caps' vertices */

@@ -41,10 +41,10 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
 /* Finds which vertices this call counts. A vertex on a seam between boxes belongs to several ranks:
  * the rank that owns the vertex's first triangle counts it. The triangles of a box and its ring
  * have the same order on all ranks. Triangles in the ring beyond all ranks' boxes, where the whole
- * surface ends, have no owner, and are skipped. Another rank owns each square of a cap in the ring,
- * so the bit MCOR_CAP_SQUARE also serves as MCOR_OTHERS_CELL. *owners must be NULL before the call.
- * It becomes an array [vertex_count], MCOR_OWN for vertices that this call counts, or stays NULL if
- * box.is_part is false. The caller frees *owners, also after a failure. */
+ * surface ends, have no owner, and are skipped. In the ring, MCOR_OTHERS_CELL marks cells of other
+ * ranks. It is the same bit as MCOR_CAP_SQUARE, because other ranks own all squares of caps there.
+ * *owners must be NULL before the call. It becomes an array [vertex_count], MCOR_OWN for vertices
+ * that this call counts, or stays NULL if box.is_part is false. The caller always frees *owners. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
 {
   const mcor_mesh* mesh = &context->mesh;

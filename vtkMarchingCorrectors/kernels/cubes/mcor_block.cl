@@ -44,8 +44,8 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
 #endif
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube. Reads the states of the cube and of the cubes around it. Writes whether
- * the cube is inactive. Places off the lattice, or in a larger, inactive cube, do not count. */
+/* One work-item = one cube. Reads the states of the cube and of its neighbours. Writes whether the
+ * cube is inactive. A neighbour off the lattice, or in a larger, inactive cube, has no state. */
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {

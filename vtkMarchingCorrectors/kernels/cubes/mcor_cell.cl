@@ -66,7 +66,7 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 }
 
 /* A brick has MCOR_EDGE_MASKS masks of edges. Mask `axis` has the crossed edges along the axis.
- * Mask 3 + axis has those of them that are next to a cell that is not used (see mcor_march.cl).
+ * Mask 3 + axis has the edges of mask `axis` next to a cell that is not used (see mcor_march.cl).
  * Mask 6 + axis has the pinched edges: only two of the four cells around such an edge are used, and
  * these two are opposite to each other. Each of the two has a vertex of its own on the edge. The
  * second vertex is for the cell that is lower along the first of the other two axes. */

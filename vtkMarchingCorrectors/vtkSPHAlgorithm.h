@@ -439,7 +439,7 @@ protected:
 
   /** Whether all blocks at port 0 are one set of particles. */
   virtual bool TakesTogether() const { return this->Blocks == TOGETHER; }
-  /** Whether the output is divided into the input's blocks again if these are one set of particles. */
+  /** Whether the output has the input's blocks even if all blocks are one set of particles. */
   virtual bool KeepsBlocks() const { return false; }
 
   /**

@@ -35,9 +35,9 @@ public:
   ~vtkInternals();
 
   /**
-   * Makes a context for this device and these numbers, or keeps a context that was made for the same
-   * ones. This process is number `place` of `count` on this machine. Returns why the device is not
-   * usable, or an empty string.
+   * This process is number `place` of `count` on this machine. Makes a context for the device and
+   * both numbers, or keeps the present context if it was made for the same device and numbers.
+   * Returns why the device is not usable, or an empty string.
    */
   std::string Prepare(const std::string& device, int place, int count);
 

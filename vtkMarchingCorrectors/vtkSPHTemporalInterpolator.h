@@ -91,7 +91,7 @@ public:
   ///@{
   /**
    * The motion of the particles between the last two steps, divided by the motion that their
-   * velocities give. 0 if the two fit, or if they were not compared.
+   * velocities give. 0 if the velocities fit the motion, or were not compared with it.
    */
   vtkSPHMemberMacro(double MotionRatio = 0.0);
   vtkGetMacro(MotionRatio, double);

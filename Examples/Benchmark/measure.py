@@ -211,7 +211,7 @@ def interpolator(particles, image, h, dimension, *kept):
 
 
 def run_vtk(path, iso="0", dimension="3", length=None):
-    """Contours Swirl by vtkSPHInterpolator, on an image around the particles, and vtkFlyingEdges. length: h; None: the largest h."""
+    """Contours Swirl by VTK: vtkSPHInterpolator on an image around the particles, then vtkFlyingEdges. length: h; None: the largest h."""
     particles, dimension = read(path), int(dimension)
     h = float(length) if length else particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
     image = lattice(particles, CUBE_FACTOR * h, dimension)

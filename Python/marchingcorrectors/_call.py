@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 class Keywords(Options, total=False):
-    """The keywords of the functions. Each function has those below, but `outputs` only if it has outputs to choose; and some of the Options."""
+    """The keywords of the functions. Each function has the keywords below and some of the Options; `outputs` only if it has outputs to choose."""
 
     fluid: Optional[Fluid]
     solid: Optional[ArrayLike]

@@ -112,9 +112,9 @@ def parameters_of(report):
 
 
 def is_shown(option, value, report, base):
-    """Returns whether the report shows the option. A parameter with a name like the option's must have changed; if the option's value is a
-    number or a word, to this value. For a number, a changed array name counts, too. Returns True if there is no such parameter, or if the
-    reports are equal."""
+    """Returns whether the report shows the option. A parameter with a name like the option's must have changed. If the option's value is a
+    word, the parameter must now have this value; if it is a number, this value or a text, such as an array's name. Returns True if there
+    is no such parameter, or if the reports are equal."""
     found, before = parameters_of(report), parameters_of(base)
     changed = {name for name in {**found, **before} if found.get(name) != before.get(name)}
     mine = {name for name in {**found, **before} if any(part.startswith(option[2:].split("-")[0][:5]) for part in name.split("_"))}

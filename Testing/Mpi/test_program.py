@@ -284,8 +284,8 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
     def test_factors(self):
-        """With --widening, the first process writes all particles in the order of the pieces, with the arrays that one process makes. One
-        particle is so far away that it is left out."""
+        """With --widening, the first process writes all particles in the order of the pieces, with the same arrays as a run of one
+        process. One particle is so far away that it is left out."""
         particles = read(PARTICLES)
         particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
         for how in ([], ["--smoothing-length", "estimate", "--periodic", "0,0,3", "--no-attributes"]):

@@ -79,7 +79,7 @@ def write_phantom(path):
 
 
 def write_native(path):
-    """Writes a dump in Phantom's own format. It has the parts that sarracen reads, each between its lengths, as Fortran writes them."""
+    """Writes a dump in Phantom's own format: the parts that sarracen reads, each with its length before and after it, as Fortran writes them."""
     def block(data):
         return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
 

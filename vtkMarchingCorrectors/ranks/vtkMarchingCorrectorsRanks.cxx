@@ -117,8 +117,8 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 
 /**
  * Numbers the distinct keys of all ranks in order. Returns the numbers of this rank's keys in an
- * array called `name`. keys: must ascend. areCells: a key stands for a cell, and takes as many numbers
- * as the cell has triangles, which is the key's last part. total: how many numbers all keys take.
+ * array called `name`. keys: must ascend. areCells: a key stands for a cell. It takes as many numbers
+ * as the cell has triangles; this count is the key's last part. total: how many numbers all keys take.
  */
 vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   vtkSPHRanks& ranks, const Keys& keys, bool areCells, const char* name, vtkIdType& total)

@@ -127,7 +127,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(vtkPolyData* output, int precision, 
 }
 
 // Ids are of VTK's own type, as vtkContourFilter makes them: with other types, some filters think a
-// mesh is not a manifold. Band values begin with the lines', as VTK numbers lines first.
+// mesh is not a manifold. Band values of lines come first, because VTK numbers lines first.
 void vtkMarchingCorrectorsOutput::BuildCells(vtkPolyData* output)
 {
   mcor_surface& s = this->Surface;

@@ -205,8 +205,8 @@ bool MakeMeterTable(Sharing& sharing)
     finish);
 }
 
-// The filter of pieces describes the particles as the surface filter does. --numbers needs the pieces, too,
-// if there are several iso values: the measures of a value's surface are sums over the surface's pieces.
+// The filter of pieces gets the surface filter's settings of the particles. Besides --components, --numbers with
+// several iso values needs the pieces: the measures of a value's surface are sums over the surface's pieces.
 void AddPieces(
   std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {

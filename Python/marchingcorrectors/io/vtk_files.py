@@ -417,7 +417,7 @@ class Legacy:
         return np.empty(0)
 
     def section(self, words, into):
-        """Reads a section, whose first line has these words. Adds its arrays to the list `into`. Returns the list to give for the next section."""
+        """Reads a section, whose first line has these words. Adds its arrays to the list `into`. Returns the list for the next section's arrays."""
         word, rest = words[0].upper(), words[1:]
 
         def put(name, *how):  # VTK writes %20 for a blank in a name.

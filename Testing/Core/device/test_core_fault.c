@@ -429,7 +429,7 @@ static void test_ranks(void** state)
   }
 }
 
-/* Makes a buffer so large that it is mapped to reserve its pages. Each OpenCL call fails once. */
+/* Extends a small buffer to a large one, which is also mapped, to get large pages. Each OpenCL call fails once. */
 static void test_extend(void** state)
 {
   mcor_context* context = *state;

@@ -198,8 +198,8 @@ static int mesh_compare_triples(const void* x, const void* y)
   return (p[3] > q[3]) - (p[3] < q[3]);
 }
 
-/* Counts a fault for each two equal triples. quads: [count][4]; each row is a triple, then the number of its point or
- * triangle. */
+/* Sorts the triples, and counts a fault for each triple that equals the one before it. quads: [count][4]; each row is
+ * a triple, then the number of its point or triangle. */
 static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, mesh_report* report)
 {
   qsort(quads, (size_t)count, 4 * sizeof(double), mesh_compare_triples);

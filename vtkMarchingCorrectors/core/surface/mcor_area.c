@@ -128,8 +128,8 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* The volume is the sum of the tetrahedra from one point to all triangles. It is the surface's
- * first point, because the coordinates' origin may be far away. Lines are measured in
+/* The volume is the sum of the tetrahedra from one point to all triangles. This point is the
+ * surface's first point, because the coordinates' origin may be far away. Lines are measured in
  * mcor_plane.c. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {

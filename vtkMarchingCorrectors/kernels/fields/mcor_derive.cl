@@ -98,7 +98,7 @@ __kernel void mcor_derive_gradients(MCOR_GROUP_PARAMS, __global const real4* off
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* If fewer than MCOR_ARRAY_STEP arrays are left, first_array is read in place of the others. */
+    /* If fewer than MCOR_ARRAY_STEP arrays are left, array first_array is read more than once. */
     array[c] = arrays + (first_array + (c < count ? c : 0)) * (long)stride;
     own[c] = mcor_derive_own(&points, order, array[c] + first);
     for (int a = 0; a < 3; ++a)

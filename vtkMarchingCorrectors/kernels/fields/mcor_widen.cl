@@ -355,8 +355,8 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, const real i
   MCOR_STORE(result, begin, limited);
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the factors, which particles mcor_widen_solve
- * has treated (`listed`), and what it wrote to `outside` for these. Writes to `outside` whether
+/* One work-item = MCOR_LANES sorted particles. Reads the factors; from `listed`, which particles
+ * mcor_widen_solve has treated; and what it has written to `outside`. Writes to `outside` whether
  * each particle is inside with its own length (the weight sum is at least the iso value), but
  * outside with the length times the factor (the weight sum is below the iso value). */
 __kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,

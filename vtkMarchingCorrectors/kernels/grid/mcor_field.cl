@@ -76,8 +76,8 @@ realv mcor_weight(realv distance, realv inv_h)
 #endif
 }
 
-/* If the gradient with respect to the offset d is wanted, too, W / norm * h^3 and the gradient are
- * made in two other steps, mcor_length_of and mcor_weight_gradient. */
+/* W / norm * h^3 and its gradient with respect to the offset d are also made in two steps,
+ * mcor_length_of and mcor_weight_gradient. */
 typedef struct
 {
   realv r2, inv_r;

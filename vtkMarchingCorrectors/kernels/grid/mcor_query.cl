@@ -195,7 +195,7 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
 }
 
 /* Skips empty rows, so that mcor_query_next_row goes on with the level's next row that has
- * particles or, if that row has another z, with the first row at this z. */
+ * particles or, if that row has a larger z, with the query's first row at the larger z. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;

@@ -393,7 +393,7 @@ public:
 
   ///@{
   /**
-   * Values with which a panel begins, from the input's particles. Bounds: see FindFluidBounds(), or 0.
+   * Values with which a panel begins, from the input's particles. Bounds: see FindFluidBounds(); 0 if unknown.
    * Densest: for each of x, y and z, a point on the densest line along this axis. Estimate: 1 if
    * the particles have no smoothing lengths. Blocks: the names for FluidArrayName that choose a
    * block, one a line.

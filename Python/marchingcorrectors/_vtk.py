@@ -306,7 +306,7 @@ class Particles(Arguments):
                       for name, array in self.interpolated.items()}
         self.scalar_name, self.iso_value_name = self.text("scalar_name"), self.text("iso_value_name")
         whole = self.scalar is not None and self.dot is None and (self.scalar.GetNumberOfComponents() == 1 or component < 0)
-        # The array that has the iso value on the surface, itself or as magnitude. A component and a dot product have no such array.
+        # The name of the contoured array: a scalar, or a vector whose magnitude is contoured. None for a component or a dot product.
         self.contoured = name_of(self.scalar) if whole else None
 
     @staticmethod

@@ -57,7 +57,7 @@ struct Cells
   }
 };
 
-/** Copies arrays of `count` tuples to `to`, only their tuples `ids`. Skips an array if `to` has one of the same name. */
+/** Copies the tuples `ids` of each array with `count` tuples to `to`, unless `to` has an array of the same name. */
 void AddValues(vtkDataSetAttributes* from, vtkIdType count, vtkIdList* ids, vtkPointData* to)
 {
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)

@@ -270,7 +270,7 @@ int ToCount(Text option, Text text, int smallest, int largest)
 std::string NearestOf(Text text, const std::vector<std::string>& names)
 {
   // Compares in small letters, without - and _. If the name begins with the text, or the text with the
-  // name (four letters or more), the name counts as near as if one letter were wrong.
+  // name (four letters or more), their distance is at most 1, as if one letter were wrong.
   const auto lettersOf = [](std::string word)
   {
     word.erase(

@@ -340,8 +340,8 @@ static void many_slices(void** state)
   assert_true(core_hash(&one) == core_hash(&with));
 }
 
-/* With these periods, the edges of cubes hardly differ, and are shorter than the device's cube.
- * Vertices move as far as in cubes whose edges are equal, and as long as the device's. */
+/* With unequal periods, the edges of cubes differ a little, and are shorter than the device's unit of length. With
+ * equal periods, the edges are as long as this unit. The mean move of vertices must be nearly equal in both cases. */
 static void unequal_edges(void** state)
 {
   const double iso = 0.1, period[6] = { 0, 12, 0, 12, 0, 12 };

@@ -58,7 +58,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
   if (line && !sides[0] && !sides[1])
   {
-    /* No bands lie beside this line. So several iso values are equal, of which only one has bands. */
+    /* Of several equal iso values, only one has bands at its line. This line has none: its value must occur again. */
     int times = 0;
     for (int i = 0; i < f->options->iso_count; ++i)
     {

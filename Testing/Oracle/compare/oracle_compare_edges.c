@@ -150,8 +150,8 @@ static compare_place compare_find_place(const compare_state* state, const double
   return place;
 }
 
-/* The vertex lies at no expected crossing. Returns whether trimming made it, which its boundary flag says. If rounding
- * decides whether there is a crossing (close), the flag must also be 2 (placed linearly), or the trimming margin 0. */
+/* The vertex lies at no expected crossing. Returns whether trimming made the vertex: its boundary flag is not 0. If
+ * rounding decides whether there is a crossing (close), the flag must be 2 (placed linearly), or the trim margin 0. */
 static int compare_is_cut(const compare_state* state, int64_t v, int close)
 {
   const mcor_surface* surface = state->surface;

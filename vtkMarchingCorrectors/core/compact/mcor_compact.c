@@ -180,8 +180,8 @@ static void mcor_keep_slice(void* data, int slice, int64_t first, int64_t last)
   bunches->slice_left[slice] = to - first;
 }
 
-/* The correction tells how many cubes it moved an appended vertex. Makes this a share of the edge
- * that the vertex's node names, as for other vertices. */
+/* mesh.linear tells how far the correction moved a vertex: as a share of the vertex's edge, but
+ * in cubes if the vertex is an appended one. Turns these lengths in cubes into shares, too. */
 static mcor_status mcor_share_moves(const mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;

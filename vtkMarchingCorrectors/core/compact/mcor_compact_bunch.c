@@ -32,7 +32,7 @@
  * equally near, the lower end. Gives each vertex the key of its node. The key contains the last bit
  * of the level. As levels of neighbouring cells differ by at most one, nodes of different levels
  * then have different keys. Vertices stay (MCOR_FROZEN) if they lie on a side that caps close, on a
- * side of the period or on the border that the node threshold leaves, or belong to cuts or caps. */
+ * side of the period or on an edge with an unused cell, or if they belong to cuts or caps. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -327,8 +327,8 @@ static void mcor_merge_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Chooses unsure bunches that can be merged, given the bunches merged so far: sets `leans`. If two
- * unsure bunches are neighbours, only the one with the lower first vertex may be chosen. */
+/* Sets `leans` for the unsure bunches that it chooses: they can be merged beside the bunches merged
+ * so far. Of two unsure neighbours, only the one with the lower first vertex may be chosen. */
 static void mcor_choose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

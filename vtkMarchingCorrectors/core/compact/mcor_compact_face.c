@@ -48,9 +48,9 @@ static double mcor_badness(const mcor_bunches* bunches, const int32_t place[3], 
 
 /* ---- Bunches that are taken apart ---- */
 
-/* Judges each triangle. Its merged bunches that did not reach the surface become bad. If all of
- * them reached the surface, but the triangle is turned over, all of them become bad. Sets `wide`
- * for the widest corner of a sliver, if this vertex may move. */
+/* Judges each triangle. A merged bunch at its corners becomes bad if it did not reach the surface.
+ * If all bunches reached the surface, but the triangle is turned over, all merged bunches at its
+ * corners become bad. Sets `wide` for the widest corner of a sliver, if this vertex may move. */
 static void mcor_judge_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -58,10 +58,10 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Tests regions of 2^3 bricks. Requests the bricks that the surface may reach, whose cells are the
- * seeds, and lists their regions. Gives slots to these bricks, and to all bricks that are known
+/* Tests regions of 2^3 bricks. Requests the bricks that the surface may reach (their cells are the
+ * seeds), and lists their regions. Gives slots to these bricks, and to all bricks that are known
  * from earlier iso values. Then tests the requested bricks one by one; on CPUs, also evaluates the
- * uncertain ones. In a plane, skips this last step: bounds cost more than a brick's few nodes. */
+ * uncertain ones. In a plane, skips these tests: they cost more than evaluating a brick's nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -189,9 +189,9 @@ mcor_status mcor_settle_device(
 void mcor_close_device(mcor_context* context);
 /* Chooses the variant of the kernels that is used from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
-/* Does what mcor_choose_build does. Begins to build those of `programs` (a set of bits) that are
- * missing, in threads, in the order in which a run needs them. Does nothing on the built-in device,
- * or if only one thread may be used. */
+/* Chooses the build, and starts threads that build the missing ones of `programs` (a set of bits),
+ * in the order in which a run needs them. Does neither on the built-in device, or if only one
+ * thread may be used. */
 mcor_status mcor_build_ahead(mcor_context* context, const mcor_build* build, int programs);
 /* Returns about how many seconds the missing programs take to build; 0: none, or not known. */
 double mcor_build_rest(mcor_cl* cl);

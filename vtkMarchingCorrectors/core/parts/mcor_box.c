@@ -65,8 +65,8 @@ void mcor_move_period(mcor_options* options)
 /* With adaptive cubes, a box does not need a particle whose support misses the box by more than
  * this, in cells of the particle's level. The particle does not reach larger cells. Cells in the
  * ring, and cells whose centres are in the box, have nodes at most two cells away from the box.
- * Trimming may move a vertex 3/4 of a cell further, into a cell half as large; 2.75 cells are 5.5
- * of these smaller cells. For a wider ring see mcor_level_ring. */
+ * Trimming may move a vertex 3/4 of a cell further, into a cell half as large. So the vertex lies
+ * at most 5.5 of these smaller cells away from the box. For a wider ring see mcor_level_ring. */
 #define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
 /* For a probe, the field is evaluated up to this distance, in cubes, from the cells around the
@@ -107,8 +107,8 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
 
 /* Writes the two sides of the box along an axis, `low` and `high`, in halves of a cube. In this
  * unit, the centres of cells of all levels are whole numbers. With several levels, large cells
- * stick out of the lattice. Therefore a side of the box that is also a side of the lattice is put
- * beyond all cells or, with a period, at the period's end; so are both sides if `sides` is NULL. */
+ * stick out of the lattice, so a side of the box that is also a side of the lattice is put beyond
+ * all cells or, with a period, at the period's end. If `sides` is NULL, both are put there. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {

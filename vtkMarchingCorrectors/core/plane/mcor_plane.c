@@ -135,8 +135,8 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Exchanges the axes of all bounds. Along the plane's normal, the bounds become the coordinate of
- * the plane, minus and plus the largest support. The plane's coordinate is 0 in its own axes. */
+/* Exchanges the axes of edges and ranges. Along the plane's normal, x_low and x_high become the
+ * plane's coordinate (0 in its own axes); low and high lie the largest support away from it. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;

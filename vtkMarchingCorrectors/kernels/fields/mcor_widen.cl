@@ -97,8 +97,8 @@ typedef struct
 } mcor_crowd;
 
 /* Finds c[l], the weight sums at the particles j with lengths s[l] h_j, for `levels` factors s, the
- * largest first. Sums over the particles within `reach` h_j. Also finds the crowd unless `crowd` is
- * NULL. Each lane has its own reach, so its sum does not depend on the other lanes. */
+ * largest first. Sums over the particles within `reach` h_j. Also fills in the mcor_crowd `crowd`
+ * unless it is NULL. Each lane has its own reach, so its sum does not depend on the other lanes. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
   realv* c, mcor_crowd* crowd)

@@ -369,10 +369,10 @@ void mcor_values_load(
 
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
-/* Adds w_i A_i, for the particles i of a reach, to `step` sums, one for each attribute A. Only the
+/* Adds w_i A_i, for the particles i in `reach`, to `step` sums, one for each attribute A. Only the
  * first `count` sums have an attribute. One loop adds to all sums: while one sum waits for its last
- * addition, the loop adds to other sums. weight: w_i in each lane; if `make` is set, computes w_i,
- * and adds it to *weight_sum. Each call passes constants as `step` and `make`. */
+ * addition, the loop adds to other sums. weight[i]: w_i; if `make` is set, computes w_i, and adds
+ * it to *weight_sum. Each call passes constants as `step` and `make`. */
 #define MCOR_ATTRIBUTE_STEP 4
 __attribute__((always_inline)) void mcor_attribute_add(const mcor_grid* grid,
   const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,

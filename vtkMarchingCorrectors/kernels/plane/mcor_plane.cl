@@ -12,8 +12,8 @@
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL
 
-/* One work-item = one brick. Copies the bits of nodes in the plane to the layers above: `above` to
- * all layers, `valid` only to the first, so that only one layer of cells can be used. */
+/* One work-item = one brick. Copies the bits of nodes in the plane to higher layers of nodes: in
+ * `above` to all, in `valid` only to the first, so that only one layer of cells can be used. */
 __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __global ulong* valid)
 {
   MCOR_ITEM(slot, slot < brick_count);

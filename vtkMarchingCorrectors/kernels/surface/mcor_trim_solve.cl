@@ -177,8 +177,8 @@ fixv mcor_trim_normalize(mcor_quantity* q)
 
 /* Finds Newton's step of least norm towards the place where field = iso and weight = threshold. It
  * is -J^T (J J^T)^-1 (f, w), shortened to MCOR_TRIM_STEP if it is longer; the rows of J are the
- * gradients of f and w. Returns the lanes in which a gradient is 0, or both are parallel: they have
- * no step. */
+ * gradients of f and w. Returns the lanes that have no step, because a gradient is 0, or the two
+ * gradients are parallel. */
 fixv mcor_trim_step(mcor_quantity f, mcor_quantity w, realv d[3])
 {
   const fixv flat = mcor_trim_normalize(&f) || mcor_trim_normalize(&w);

@@ -7,7 +7,7 @@ from pathlib import Path
 _CORE = Path(__file__).parents[1] / "vtkMarchingCorrectors" / "core"
 _SAYS, _OPTIONS = ((_CORE / f"mcor_{name}.def").read_text(encoding="utf-8") for name in ("says", "options"))
 TEXTS = {code: text.replace('\\"', '"') for code, text in re.findall(r'^SAYS\((\w+), "(.*)"\)$', _SAYS, re.M)}
-# {name: the panel's word for the slot {name} in a sentence}
+# {name: the panel's word that replaces {name} in a sentence}
 SLOTS = {**{member: re.sub(r"(?<=.)(?=[A-Z])", " ", name) for member, name in
             re.findall(r'^(?:OPTION|BOUNDS)\((\w+), .*"(\w*)"\)$', _OPTIONS, re.M)},
          **dict(re.findall(r'^SLOT\("([^"]+)", "([^"]+)"\)', _SAYS, re.M))}

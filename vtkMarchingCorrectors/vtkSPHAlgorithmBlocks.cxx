@@ -204,8 +204,8 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-// Keeps, for both ends of each axis, the `far` + 1 outermost coordinates, because at most `far`
-// particles are left out at an end. At upper ends, coordinates are negated.
+// At most `far` particles are left out at each end of an axis, so for each end the `far` + 1
+// outermost coordinates are kept. At upper ends, coordinates are negated.
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6], double* densest)
 {
   const auto run = vtkRun::Make(this);

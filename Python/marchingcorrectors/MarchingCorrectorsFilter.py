@@ -94,7 +94,7 @@ def snake(name):
 
 
 def with_properties(kind):
-    """Adds SetX, GetX, XOn, XOff and the properties X and x for each X of PROPERTIES, and what tables such as WORDS name. Returns the class."""
+    """Adds methods, properties and constants, such as SetX, GetX, XOn, XOff, X and x for each X of PROPERTIES. Returns the class."""
     def define(name, get, put=None):
         setattr(kind, "Get" + name, get)
         setattr(kind, snake(name), property(get, put))

@@ -154,7 +154,7 @@ def between(before, after, first, last, time, velocity=None):
     Particles are matched by their ids. Positions follow the cubic curve that has the velocities of both steps. They are linear in
     time if there are no velocities, or, with a warning, if particles move less than half or more than twice as far as the velocities
     say. Other real numbers are linear in time. Integers, and arrays that the other step lacks, are those of the nearer step. A particle that
-    only one step has exists in the half of the interval next to this step, where it moves straight on with its velocity, if both steps
+    is in only one step exists in the half of the interval next to this step, where it moves straight on with its velocity, if both steps
     have velocities. Raises InvalidArgument if ids are missing or not unique.
     """
     share, span = (time - first) / (last - first), last - first

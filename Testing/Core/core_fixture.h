@@ -144,7 +144,7 @@ void core_check_flags(const mcor_surface* surface);
 /* CORE_HASH_OF_NOTHING: the hash of no bytes. core_hash_bytes adds bytes to a hash, unless data is NULL. */
 #define CORE_HASH_OF_NOTHING 0xCBF29CE484222325u
 uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
-/* Hashes points, triangles, lines and optional arrays; of an attribute, only as many numbers as there are points. */
+/* Hashes points, triangles, lines, optional arrays and, of each attribute, the first point_count numbers. */
 uint64_t core_hash(const mcor_surface* surface);
 
 /* Compiles the kernels in `source` together with the library's sources, so that mcor_launch can

@@ -136,7 +136,7 @@ static void check_keys(const mcor_surface* s)
   }
 }
 
-/* Cuts for sets of particles that surround the origin and are about 10 wide. */
+/* Ways to cut space into boxes, for sets of particles that surround the origin and are about 10 wide. */
 const core_cut core_cuts[CORE_CUTS] = {
   { "2 boxes", { 1, 0, 0 }, { { 0.37 } } },
   { "3, one thinner than a support", { 0, 0, 2 }, { { 0 }, { 0 }, { 1.1, 1.9 } } },

@@ -312,7 +312,7 @@ vtkSPHRanksLists vtkSPHRanksSpace::ListOwners(vtkDataSet* points) const
   return owners;
 }
 
-// The `count` boxes fill a larger box: its low sides are the first box's, its high sides the last's.
+// The `count` boxes fill a larger box, with the low sides of the first box and the high sides of the last.
 bool vtkSPHRanksSpace::Reaches(int rank, int count, const double at[3], double radius) const
 {
   bool reaches = true;

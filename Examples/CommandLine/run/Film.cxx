@@ -46,8 +46,8 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// Makes the image for a step of which no particle lies in the image. Its place and size are those of the
-/// image `like`. All values are 0, or NaN if the image shows a mean.
+/// Makes an empty image, which has the place and size of the image `like`, for a step of which no particle
+/// lies there. All values are 0, or NaN if the image shows a mean.
 vtkSmartPointer<vtkImageData> EmptyImage(const Job& job, vtkImageData* like)
 {
   auto empty = vtkSmartPointer<vtkImageData>::New();

@@ -115,7 +115,7 @@ bool SetAttributes(int descriptor, const Target& target)
   mode_t mode = target.Exists ? old.st_mode & 07777 : 0666 & ~mask;
   if (target.Exists)
   {
-    // If the owner or the group cannot stay, the new one must not get the old one's permissions.
+    // If the group cannot stay, the new one gets no permissions. A set-ID bit stays only with its owner or group.
     const bool sameGroup = fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) == 0;
     const bool sameOwner = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0;
     mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));

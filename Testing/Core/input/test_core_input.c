@@ -563,8 +563,8 @@ static void test_outliers(void** state)
   expect_good(*state);
 }
 
-/* Checks when a free surface is suggested. If particles fill a cube, it is suggested only for a liquid, or if some are
- * solids; if they leave a part of one octant empty, always. There are enough particles for several threads. */
+/* Checks when a free surface is suggested: if a cube is full of particles, only for a liquid or if there are solids; if
+ * a part of one octant is empty, always. There are enough particles for several threads. */
 static void test_free_surface_comes_first(void** state)
 {
   CORE_SET set = core_make_block(54, 0.2, 5, core_slope);

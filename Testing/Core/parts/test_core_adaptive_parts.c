@@ -36,8 +36,8 @@ static void smooth_surfaces(void** state)
   core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
 }
 
-/* Checks a noisy scalar of particles that grow outwards: many triangles are of level 1, loops of vertices lie flat in faces
- * between levels, and some edges are pinched (have two vertices). */
+/* Checks surfaces of a noisy scalar on particles that are larger further out. Many triangles are of level 1, loops of
+ * vertices lie flat in faces between levels, and some edges are pinched (have two vertices). */
 static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;

@@ -34,7 +34,7 @@ static mcor_status mcor_test_cubes(
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* The largest number of blocks. If a fourth had surface, there would be too many triangles. */
+/* The largest number of blocks. If a quarter had surface, there would be too many triangles. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
 /* Replaces the cubes of a level by the parts of the active cubes among them. If the parts are

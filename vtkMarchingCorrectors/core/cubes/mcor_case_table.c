@@ -174,7 +174,7 @@ typedef struct mcor_strip
   uint8_t path[3 * 24], best[3 * 24]; /* slots of triangles */
 } mcor_strip;
 
-/* Returns the cost of side (i, j): its squared length in half cell edges; 1000 more in a face. */
+/* Returns the cost of side (i, j): its squared length in half cell edges, plus 1000 in a face. */
 static int mcor_side_cost(const mcor_strip* strip, int i, int j)
 {
   int cost = (strip->first.facets[i] & strip->second.facets[j]) >> 24 ? 1000 : 0;

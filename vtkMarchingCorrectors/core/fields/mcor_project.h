@@ -40,7 +40,7 @@ double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 /* Returns the table's cell, and the weights, for a rectangle's side at `at` (in h) along x (axis 0)
  * or y (axis 1). */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
-/* Writes to sums[i] E at the corner where sides[i] along x meets `side` along y, for i < count. */
+/* Writes E at `count` corners to `sums`: where each of `sides` along x meets `side` along y. */
 void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, int count,
   const mcor_column_side* side, double* sums);
 

@@ -61,9 +61,9 @@ static void mcor_read_amounts(
 /* ---- particles in the image ---- */
 
 /* Finds the periodic images of a particle that count for the image: images [first, last] along each
- * axis. A periodic image counts if its position is in the box. If the line of sight is along x, y
- * or z, it is enough along the other two axes that its support reaches the box. Moves x into the
- * first period of the box. Returns whether any periodic image counts. */
+ * axis. A periodic image counts if its position is in the box. But if the line of sight is along x,
+ * y or z, then along the other two axes the particle's support need only reach the box. Moves x
+ * into the first period of the box. Returns whether any periodic image counts. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {

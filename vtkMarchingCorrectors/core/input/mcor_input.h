@@ -84,7 +84,7 @@ bool mcor_is_all_within(const double* x, int count, double least, double most);
 /* mcor_check.c. Fails and says that two sides of a box are not an interval. */
 mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to);
 
-/* The largest number of particles. Kernels count in int, and a little beyond the last particle. */
+/* The largest number of particles. Kernels count them in int, and go a little beyond the last. */
 #define MCOR_PARTICLE_LIMIT 2000000000
 
 static inline const char* mcor_array_name(const mcor_array* array, const char* role)

@@ -186,9 +186,9 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
   const double* edge = lattice->edge;
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
-  /* spared: how many of the lowest bits of an edge's length, in fixed-point units, are 0 if edges
-   * are unequal. Edges are rounded as coarsely as positions of particles with the longest supports,
-   * or more coarsely if a double could not hold the coordinates of all nodes exactly otherwise. */
+  /* Unequal edges are rounded: in fixed-point units, the lowest `spared` bits of their lengths are
+   * 0. Edges are rounded as coarsely as positions of particles with the longest supports, or more
+   * coarsely if a double could not hold the coordinates of all nodes exactly otherwise. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;

@@ -87,8 +87,8 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-/* A brick with nodes on a side, or one node further in. Its masks have a bit for each node of the
- * brick, see MCOR_BRICK. */
+/* A brick with nodes on a side of a period or box, or with nodes one further in. Its masks have a
+ * bit for each node of the brick, see MCOR_BRICK. */
 typedef struct mcor_cap_brick
 {
   uint64_t key;  /* must be the first member; orders bricks by the side's second axis, then by its

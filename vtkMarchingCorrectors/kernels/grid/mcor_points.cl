@@ -170,8 +170,8 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
-/* Converts an offset from edges to cubes. If an edge is shorter than a cube, rounds an offset close
- * to a whole number of fixed-point units, so that a particle's distance from itself is 0. */
+/* Converts an offset from edges to cubes. If an edge is shorter than a cube, an offset near a whole
+ * number of fixed-point units is rounded, so that a particle's distance from itself is 0. */
 real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
 {
   const real at = offset * grid->edge[axis], units = at * grid->units,

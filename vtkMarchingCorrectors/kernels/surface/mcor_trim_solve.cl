@@ -16,10 +16,10 @@ real mcor_trim_fluid(__global const real* weight, __global const real4* gradient
 
 /* One work-item = one vertex. Writes the number that decides whether the vertex is trimmed: the
  * vertex is inside if this number is above a limit. If fluid_share <= 0, the number is `quantity`
- * and the limit is `threshold`. Else the limit is 0. Then, if the field is the weight sum, the
- * number is F - fluid_share * weight, where F is the fluid's own weight; if not, it is the smaller
- * of this difference and quantity - threshold. A vertex without a mean gets at most the limit, and
- * so is outside. */
+ * and the limit is `threshold`. Else the limit is 0, and the number depends on the field: for the
+ * weight sum, it is `share`, the fluid's own weight minus fluid_share * weight; for other fields,
+ * the smaller of `share` and quantity - threshold. A vertex without a mean gets at most the limit,
+ * and so is outside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)

@@ -306,7 +306,7 @@ int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-// Each piece of the points needs all particles. If ranks share a run, they exchange particles.
+// Asks for all particles, because each piece of the points needs all. Ranks that share a run exchange them instead.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {

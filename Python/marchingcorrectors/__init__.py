@@ -60,7 +60,7 @@ def __dir__() -> List[str]:
 
 
 def _find_class(name: str) -> Any:
-    """Returns a class of VTK: the C++ class if it was built, else, of vtkMarchingCorrectors alone, the filter in Python. Raises ImportError."""
+    """Returns the class `name` in C++ or, if not built, in Python (vtkMarchingCorrectors alone). Raises ImportError if there is neither."""
     try:
         import vtkmodules
     except ImportError:

@@ -60,8 +60,8 @@ class Result:
 
 @contextlib.contextmanager
 def writing(path, mesh=None):
-    """Lets the system's errors name the file that the block writes. mesh: what the block writes by VTK's writers. On a full disk, they may end
-    the process, or write a part of the file without a word, and then some bytes more do not fit, either."""
+    """Lets the system's errors name the file that the block writes. mesh: a mesh that VTK writes. On a full disk, VTK may end the process,
+    so free space is checked before the block; or VTK may write a part without an error, so some more bytes are written as a test."""
     try:
         if mesh is not None and shutil.disk_usage(os.path.dirname(os.path.abspath(path))).free < 1024 * mesh.actual_memory_size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

@@ -570,7 +570,7 @@ class Options(CommandLineTest):
         self.assertEqual(self.succeed(*ISO, "--device", found["device"])["device"], found["device"])
 
     def test_dashes(self):
-        # A file name may begin with a dash after --; a value may after =, or if it is a number.
+        # After --, file names may begin with a dash. So may values after =, and values that are numbers.
         self.run_good("--free-surface", "--stats=-s.json", "--", self.input, "-o.vtp")
         json.loads((self.directory / "-s.json").read_text())
         self.assertTrue((self.directory / "-o.vtp").exists())

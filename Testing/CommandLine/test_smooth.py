@@ -16,8 +16,8 @@ class Smooth(CommandLineTest):
         self.points = [tuple(x + random.gauss(0, 0.08) * 0.1 for x in point) for point in self.points]
 
     def test_factors_in_a_file(self):
-        """Smoothing lengths that are multiplied by the factors of --widening give the same surface as --widen, if volumes and cubes are as
-        with the original lengths."""
+        """Smoothing lengths that are multiplied by the factors of --widening give the same surface as --widen, if volumes and cubes stay
+        the same."""
         for computed in (True, False):
             arrays = {name: array for name, array in self.arrays.items() if not computed or name not in (
                 "Mass", "Density", "Volume")}

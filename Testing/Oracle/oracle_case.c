@@ -198,8 +198,8 @@ static void case_check_accuracy(case_run* run, int trimmed)
  * right. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
-  /* A threshold of 0 trims only Shepard means, where the fluid's weight is nearly 0. A sum with a kernel that has
-   * negative lobes gets the threshold 0.05, because the weight at a vertex may be 0 or less if h is far too small. */
+  /* Without trimming, the threshold is 0. It still cuts a Shepard mean where the fluid's weight is nearly 0. A sum with
+   * negative lobes of the kernel gets 0.05, because the weight at a vertex may be 0 or less if h is far too small. */
   const int lobes =
     run->at->options.sph_kernel == MCOR_M_PRIME_4 && run->at->options.field == MCOR_SUM;
   const int cut = trimmed || lobes || run->at->options.field == MCOR_SHEPARD;

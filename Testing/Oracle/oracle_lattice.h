@@ -97,8 +97,8 @@ extern "C"
     lattice_cell* cells;
     lattice_edge* edges;
     lattice_segment* segments; /* of valid cells, without loops of two */
-    /* From a pair of crossed edges of a face (the lower number first) to the number of valid cells at the face. doubts:
-     * pairs of a cell that rounding may make valid or not. either: pairs that rounding may join or not. */
+    /* Each maps a pair of crossed edges of a face (lower number first) to the number of valid cells at the face.
+     * doubts: pairs in cells that rounding may make valid or not. either: pairs that rounding may join or not. */
     oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;

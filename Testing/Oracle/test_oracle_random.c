@@ -54,7 +54,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
     at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
-  /* If a free surface ends at solids, computed volumes depend on the solids, so such cases have no wall share. */
+  /* A free surface with computed volumes gets no wall_share, with which these volumes would depend on the solids. */
   if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.volume.data))
   {
     static const double shares[] = { 0.0, 0.5, 0.8 };

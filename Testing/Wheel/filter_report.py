@@ -17,7 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataReader, vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-# What the filter chooses: in a run (Used...) which arrays and fluid, before a run (Next...) which defaults.
+# Properties that tell the filter's choices. Used...: what the last run used. Next...: the defaults for the next run.
 FOUND = [f"Used{name}ArrayName" for name in ("SmoothingLength", "Volume", "Mass", "Density")] + [
     "UsedFluid", "UsedIsoValues", "IsoValueArrayName", "NextArray", "NextIsoValue", "NextScalarRange", "NextComponents",
     "NextDimension", "NextFluid", "NextCells"]

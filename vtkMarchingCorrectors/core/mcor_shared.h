@@ -19,8 +19,8 @@
 typedef struct mcor_level
 {
   MCOR_TYPE(ulong) base; /* key of the level's cell (0, 0, 0) */
-  /* In fixed-point units. period: the period's length; 0: there is none. side: of the places where
-   * a period begins, the lowest that is 0 or more. */
+  /* In fixed-point units. period: the period's length, or 0 without a period. side: the first place
+   * at or above 0 where a period begins. */
   MCOR_TYPE(long) period[3], side[3];
   MCOR_TYPE(int) cells[3];        /* extent of the level, in its cells */
   MCOR_TYPE(int) period_cells[3]; /* cells of a period */

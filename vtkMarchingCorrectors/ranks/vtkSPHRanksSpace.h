@@ -94,8 +94,8 @@ private:
    * tree divides among the `count` ranks from `rank` on.
    */
   bool Reaches(int rank, int count, const double at[3], double radius) const;
-  /** A cube around `at`, or around an image of `at`, reaches the boxes of some of the `count` ranks from
-   * `rank` on: adds these ranks to `found`. radius: half of the cube's edge. */
+  /** Of the `count` ranks from `rank` on, adds to `found` each rank whose box is reached by a cube around
+   * `at`, or around an image of `at`. radius: half of the cube's edge. */
   void AddReached(
     int rank, int count, const double at[3], double radius, std::vector<int>& found) const;
 

@@ -61,7 +61,7 @@ public:
    */
   vtkSPHParticles* Send(vtkSPHParticles& mine, vtkPointSet* particles, int parts);
   /** Makes the input describe all ranks' particles, for warnings: sets their number, and removes the
-   * globals. Also removes positions and marks of solids: this rank knows only its own particles'. */
+   * globals. Also removes positions and marks of solids, because this rank knows only its own particles. */
   void OfAll(mcor_input& core, mcor_options& options) const;
   /** Adds a statistic with one component for each rank. */
   template <typename T>

@@ -43,7 +43,7 @@ static void trimmed_surfaces(void** state)
   core_check_cuts(*state, "eigenvalue, preview", &input, &options);
 }
 
-/* Checks a noisy scalar, which makes ambiguous faces, and pinched edges, which have two vertices. */
+/* Checks a noisy scalar, which makes ambiguous faces and pinched edges (edges with two vertices). */
 static void rough_surfaces(void** state)
 {
   const double iso = 0.1;

@@ -280,10 +280,10 @@ static mcor_status mcor_scan_row(
   return MCOR_OK;
 }
 
-/* Divides each part of `parts` into sections. If `parts` is job->changed, the sections with a
- * crossing take the place of the part (one: only the first of them). If `parts` is job->suspects,
- * sections with a crossing are added to job->changed, and the part is dropped; without crossings,
- * the two sections beside each extremum that may be beyond the level take its place. */
+/* Divides each part of `parts` into sections, and removes the part. If `parts` is job->changed,
+ * puts the sections with a crossing there (one: only the first). If `parts` is job->suspects,
+ * appends the sections with a crossing to job->changed; if there are none, puts into job->suspects
+ * the two sections beside each extremum that may be beyond the level. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {

@@ -239,7 +239,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = found;
 }
 
-/* Returns a unit of mcor_project_job: 3/2 p, with a power of 2 p above four times `number`. */
+/* Returns a unit for mcor_project_job: 3/2 of a power of two that exceeds 4 * number. */
 static double mcor_rounding_unit(double number)
 {
   int exponent;

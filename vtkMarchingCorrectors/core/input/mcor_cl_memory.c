@@ -9,8 +9,8 @@
 #include "mcor_cl_call.h"
 #include "mcor_input.h"
 
-/* A buffer of the caller, and how the values of an array lie in it: in a row for each particle, or
- * in a single row if no other bytes lie between them. Sizes and places are in bytes. */
+/* A buffer of the caller, and where an array's values lie in it. A row has one particle's values
+ * or, if no other bytes lie between particles, all values. Sizes and places are in bytes. */
 typedef struct mcor_memory
 {
   cl_command_queue queue; /* in the buffer's own context */

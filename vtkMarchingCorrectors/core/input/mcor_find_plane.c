@@ -48,9 +48,9 @@ static mcor_findings mcor_find_spread(const mcor_input* input)
   return spread;
 }
 
-/* Fails because not all particles lie in one plane. If all fluid lies in a plane, the message names
- * the plane of the solids or, if the solids do not lie in one plane, the first solid off the
- * fluid's plane. Does not fail if a position of the fluid is not finite. */
+/* If the fluid's positions are finite, fails because not all particles lie in one plane. If all
+ * fluid lies in a plane, the message names the plane of the solids or, if the solids do not lie in
+ * one plane, the first solid off the fluid's plane. */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {
@@ -87,8 +87,8 @@ static mcor_status mcor_refuse_plane(
  * of the spacing that they would have if spread evenly over the plane. */
 #define MCOR_COARSE_SHARE 0.125
 
-/* Drops a plane that seems to come from rounding: the plane's coordinate is a float, the step to
- * the next float is long against the particles' spacing, and most tested particles have a twin. */
+/* Drops a plane that seems to come from rounding to floats: floats near the plane's coordinate are
+ * far apart, compared with the particles, and most tested particles coincide with another one. */
 static mcor_status mcor_drop_rounded_plane(
   mcor_context* context, const mcor_input* input, mcor_plane* plane)
 {

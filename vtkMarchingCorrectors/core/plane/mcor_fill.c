@@ -175,9 +175,9 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Keeps the vertices of the current lines. Adds 1 to the band (the number of iso values that a node
- * reaches) of each node that is above the iso value. If marching squares has evaluated a node, its
- * result counts, because the lines are made from this result. */
+/* Keeps the vertices of the lines of the current iso value. Adds 1 to the band (the number of iso
+ * values that a node reaches) of each node above this value. For nodes that marching squares has
+ * evaluated, takes its results, because the lines are made from these results. */
 mcor_status mcor_take_lines(mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;

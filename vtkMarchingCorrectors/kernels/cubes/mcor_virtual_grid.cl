@@ -149,8 +149,8 @@ bool mcor_request_brick(__global uint* brick_bits, int m)
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
-/* Adds cells to the set of a brick or leaf: set number `at` of `cells`, which has 64 bits in two
- * words. Returns the cells that are new in the set. */
+/* Adds cells to set number `at` of `cells`. Each set belongs to a brick or leaf, and has a bit for
+ * each of the 64 cells, in two words. Returns the cells that the set did not have before. */
 ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 {
   const uint low = (uint)added, high = (uint)(added >> 32);

@@ -21,9 +21,9 @@
 typedef struct
 {
   int particle_count, level_count, bucket_shift;
-  /* Queries, tiles and points measure lengths in cubes, or in cells of a level of adaptive cubes,
-   * which are view_edge cubes long. unit: a fixed-point unit, in this measure; units: 1 / unit.
-   * unit, units and view_edge are powers of two. */
+  /* Queries, tiles and points measure lengths in cubes (then view_edge is 1), or in cells of a
+   * level of adaptive cubes (then view_edge is a cell's length in cubes). unit: a fixed-point unit,
+   * in the same measure; units: 1 / unit. unit, units and view_edge are powers of two. */
   real unit, units, view_edge;
   real edge[3]; /* length of an edge, at most 1 */
   fix step[3];  /* length of an edge, from node to node, in fixed-point units */

@@ -49,8 +49,8 @@ real mcor_trim_fraction(real wa, real wb, real w)
  * to its other end. The position is the first place where trimmed_by sinks to the threshold or, for
  * a Shepard mean, the fluid's own weight sinks to MCOR_LEAST_FLUID. The position stays away from
  * the ends, because cut vertices of several edges would meet at an end. The position's bits do not
- * depend on the order of vertices. Writes the vector to the inner end in place of the gradient; its
- * fourth number is whether the fluid's own weight decided. */
+ * depend on the order of vertices. In place of the gradient, writes the vector from the vertex to
+ * the inner end, and as fourth number whether the fluid's own weight decided the position. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)

@@ -221,9 +221,5 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(WIDENING_MISSING), options->widen);
   const mcor_status status = mcor_run_call(context, input, options,
     mcor_uses_solids(input, options), &surface->statistics, mcor_extract_body, surface);
-  if (status != MCOR_OK)
-  {
-    mcor_free_surface(surface);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_surface, surface);
 }

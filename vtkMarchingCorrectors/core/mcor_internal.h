@@ -36,6 +36,9 @@
 /* If `status` is MCOR_OK, makes a call, and sets `status` to the call's result. It is for functions
  * that must free something before they return. */
 #define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
+/* Yields the status; if it is a failure, first frees what the call would have returned. */
+#define MCOR_OR_FREE(status, free_result, result)                                                  \
+  ((status) == MCOR_OK ? MCOR_OK : (free_result(result), (status)))
 
 /* MCOR_LIST: an array that grows. MCOR_APPEND appends a value; if memory runs out, the calling
  * function returns the failure. */

@@ -251,11 +251,7 @@ mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mc
   };
   const mcor_status status = mcor_run_call(
     context, input, &own, uses_solids, &derivatives->statistics, mcor_run_derive, &run);
-  if (status != MCOR_OK)
-  {
-    mcor_free_derivatives(derivatives);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_derivatives, derivatives);
 }
 
 void mcor_free_derivatives(mcor_derivatives* derivatives)

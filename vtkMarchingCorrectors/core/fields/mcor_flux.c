@@ -458,11 +458,7 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
     .has_density = input->attribute_count == 2 };
   const mcor_status status =
     mcor_call_level(&job.base, input, options, "Fluxes", mcor_run_flux, &fluxes->statistics);
-  if (status != MCOR_OK)
-  {
-    mcor_free_fluxes(fluxes);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_fluxes, fluxes);
 }
 
 void mcor_free_fluxes(mcor_fluxes* fluxes)

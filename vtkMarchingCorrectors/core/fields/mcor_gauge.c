@@ -539,11 +539,7 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   };
   const mcor_status status =
     mcor_call_level(&job.base, &without, options, "Gauges", mcor_run_gauge, &gauges->statistics);
-  if (status != MCOR_OK)
-  {
-    mcor_free_gauges(gauges);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_gauges, gauges);
 }
 
 void mcor_free_gauges(mcor_gauges* gauges)

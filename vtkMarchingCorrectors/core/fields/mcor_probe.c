@@ -476,11 +476,7 @@ mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mco
     .is_sum = options->field == MCOR_SUM };
   const mcor_status status =
     mcor_run_call(context, input, &own, uses_solids, &samples->statistics, mcor_run_probe, &run);
-  if (status != MCOR_OK)
-  {
-    mcor_free_samples(samples);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_samples, samples);
 }
 
 void mcor_free_samples(mcor_samples* samples)

@@ -277,11 +277,7 @@ static mcor_status mcor_call_project(mcor_context* context, const mcor_input* in
     .channels = view->weight.data ? 2 : 1 };
   const mcor_status status = mcor_run_call(
     context, &without, &own, uses_solids, &projection->statistics, mcor_run_project, &job);
-  if (status != MCOR_OK)
-  {
-    mcor_free_projection(projection);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_projection, projection);
 }
 
 mcor_status mcor_project(mcor_context* context, const mcor_input* input,

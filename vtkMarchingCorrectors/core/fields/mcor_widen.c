@@ -274,11 +274,7 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
     mcor_run_call(context, &particles, &own, mcor_uses_solids(input, options),
       &widening->statistics, mcor_run_widen, &run));
   context->kept.grid = context->kept.value = context->kept.nodes = false;
-  if (status != MCOR_OK)
-  {
-    mcor_free_widening(widening);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_widening, widening);
 }
 
 void mcor_free_widening(mcor_widening* widening)

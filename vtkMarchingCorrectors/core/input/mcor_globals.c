@@ -94,11 +94,7 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
   mcor_statistics statistics = { 0 };
   const mcor_status status =
     mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);
-  if (status != MCOR_OK)
-  {
-    mcor_free_globals(globals);
-  }
-  return status;
+  return MCOR_OR_FREE(status, mcor_free_globals, globals);
 }
 
 mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,

@@ -373,7 +373,7 @@ static void test_build(void** state)
 typedef struct profiled
 {
   double phases[MCOR_PHASE_COUNT], commands[MCOR_PHASE_COUNT]; /* seconds */
-  int64_t bytes, corrections;
+  int64_t bytes, corrections, gathers;
   double correction_seconds;
 } profiled;
 
@@ -409,6 +409,7 @@ static void read_profile(const char* path, int64_t wanted, profiled* found)
     found->phases[number] += is_phase ? host : 0;
     found->commands[number] += is_phase || strcmp(command, "build") == 0 ? 0 : host;
     found->bytes += bytes;
+    found->gathers += strcmp(kernel, "mcor_grid_gather_value") == 0 ? count : 0;
     if (strcmp(kernel, "mcor_correct_vertices") == 0 && strcmp(command, "launch") == 0)
     {
       found->corrections += count;
@@ -418,7 +419,8 @@ static void read_profile(const char* path, int64_t wanted, profiled* found)
   fclose(file);
 }
 
-/* A profile has the seconds of each phase and of the phase's commands on the device. The surface stays the same. */
+/* A profile has the seconds of each phase and of the phase's commands on the device. The surface stays the same. If
+ * all volumes are the same, they are not sorted. */
 static void test_profile(void** state)
 {
   const char* path = "core_context_profile.csv";
@@ -434,12 +436,14 @@ static void test_profile(void** state)
   setenv("MCOR_PROFILE", path, 1);
   CORE_OK(context, mcor_create_context(NULL, &context));
   unsetenv("MCOR_PROFILE");
-  for (int call = 0; call < 2; ++call)
+  for (int call = 0; call < 3; ++call)
   {
+    set.volume[1] = call < 2 ? 1 : 0.9; /* a corner, where no surface is */
     CORE_SURFACE surface = core_extract(context, &input, &options);
     assert_true(core_hash(&surface) == expected);
     profiled found;
     read_profile(path, call, &found);
+    assert_true(found.gathers == (call < 2 ? 3 : 4) || call == 0); /* y, z, the scalar */
     for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
     {
       CORE_CHECK(fabs(found.phases[p] - surface.statistics.seconds[p]) < 1e-8, "phase %d: %g s", p,

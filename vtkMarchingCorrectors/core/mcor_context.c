@@ -120,12 +120,37 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
+/* Turns arrays that have the same value for all particles into constants, so that these arrays are
+ * not read again. */
+static void mcor_find_constants(mcor_context* context, mcor_input* input)
+{
+  mcor_array* const arrays[] = { &input->smoothing_length, &input->volume, &input->mass,
+    &input->density };
+  for (int k = 0; k < (input->count > 0 ? 4 : 0); ++k)
+  {
+    mcor_array* array = arrays[k];
+    const double first = mcor_array_at(array, 0, 0);
+    if (array->data && first > 0 && mcor_array_at(array, input->count - 1, 0) == first)
+    {
+      const mcor_findings found =
+        mcor_find_range(context, array, NULL, MCOR_SKIP_ABSENT, input->count, 0);
+      array->constant = first;
+      array->data = found.least[0] < found.most[0] ? array->data : NULL;
+    }
+  }
+}
+
 /* Prepares the search grid and the scalar for these options. Reuses what is still valid of the last
  * call. */
 mcor_status mcor_prepare(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+  mcor_context* context, const mcor_input* given, const mcor_options* options)
 {
-  mcor_check_reuse(context, input, options);
+  mcor_input own = *given, *input = &own;
+  mcor_check_reuse(context, given, options);
+  if (!context->kept.grid)
+  {
+    mcor_find_constants(context, input);
+  }
   context->kept.uses_solids = context->run.uses_solids;
   if (!context->kept.value)
   {

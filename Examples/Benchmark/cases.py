@@ -153,7 +153,7 @@ def make_probe(particles, image, *arrays, keep=True):
 
 
 def seconds_of_update(filter_):
-    """Runs the filter. Returns seconds by the clock, and of the processors."""
+    """Runs the filter. Returns the seconds that have passed, and the seconds of processors' time."""
     filter_.Modified()
     begin = time.perf_counter(), time.process_time()
     filter_.Update()

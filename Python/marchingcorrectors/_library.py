@@ -80,7 +80,7 @@ class Sentence(str):
     text: bytes
 
     def say(self, word):
-        """Returns the sentence with other words in its slots. word: a mcor_word."""
+        """Returns the sentence with an interface's own words for its options. word: what word_by() returns."""
         return take_text(lib.mcor_fill_slots(self.text, word, None))
 
 

@@ -32,8 +32,8 @@ class Smooth(CommandLineTest):
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_gauges_read_the_widened_field(self):
-        """Gauges and probes use the widened field: it is 0.5 on the surface, and a gauge in a film reads the same level. The
-        file's volumes and computed volumes are tried."""
+        """Gauges and probes use the widened field. A probe of the surface's points gives 0.5. A gauge reads the same level with
+        one step and with several. The file's volumes and computed volumes are tried."""
         files.write_vtp(self.directory / "bare.vtp", self.points, {"SmoothingLength": self.arrays["SmoothingLength"]})
         for source in (self.input, "bare.vtp"):
             levels = []

@@ -91,7 +91,8 @@ void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
   }
 }
 
-// The component of the field array "IsoValues" has the name of the point array of iso values.
+// Returns the points' array of iso values, or null. Its name is the component's name of the field
+// array "IsoValues".
 vtkDataArray* vtkSPHFindIsoValues(vtkDataSet* surface)
 {
   vtkDataArray* values = surface->GetFieldData()->GetArray("IsoValues");

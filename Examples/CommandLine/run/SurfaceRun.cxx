@@ -247,7 +247,7 @@ public:
     this->IsBuilding = phase.rfind(MCOR_BUILDING, 0) == 0;
     if (!this->IsQuiet && this->IsBuilding && !std::exchange(this->HasBegun, true))
     {
-      // If no thread can be started, nothing is said.
+      // If no thread can be started, the user is not told that the driver compiles.
       FailureOf([this] { this->Waiting = std::async(std::launch::async, &Progress::Wait, this); });
     }
   }

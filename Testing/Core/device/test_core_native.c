@@ -58,7 +58,7 @@ static int is_nan(const unsigned char* bytes, size_t size)
   return size == 4 ? single != single : wide != wide;
 }
 
-/* Runs a kernel on a driver's device; the last argument is read and written. */
+/* Runs a kernel on a driver's device. data: the kernel's arguments; data[3] is read and written. */
 static void run_driver(
   mcor_context* context, cl_program program, const char* name, unsigned char* const data[4])
 {

@@ -60,7 +60,7 @@ mcor_function mcor_system_opencl(void)
     : NULL;
 }
 
-/* Only PoCL would end the process, and there is no PoCL for Windows. */
+/* Tests nothing: PoCL, which ends a process if it cannot start, is hardly used on Windows. */
 bool mcor_system_bears_drivers(void)
 {
   return true;

@@ -1,13 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums over each particle's neighbours, for particles that lack what a surface needs: smoothing
- * lengths by neighbours, and densities from masses. The sums are made on the host, in double
- * precision. A tree of boxes over particles along a Morton curve finds neighbours, because
- * smoothing lengths are unknown, or vary by any factor. Each sum adds particles in the order of the
- * curve, so it does not depend on the order of the input, on threads, or on particles outside the
- * support. So a rank finds the same bits as one process if it has all particles that its sums
- * reach. */
+/* Sums over each particle's neighbours. They give smoothing lengths and densities that the input
+ * lacks. The sums are made on the host, in double precision. A tree of boxes over particles along a
+ * Morton curve finds neighbours, because smoothing lengths are unknown, or vary by any factor. Each
+ * sum adds particles in the order of the curve, so it does not depend on the order of the input or
+ * on threads. The curve covers the particles of all ranks. So a rank finds the same bits as one
+ * process if it has all particles that its sums reach. */
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"

@@ -52,7 +52,7 @@ static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {
   return (plane->axis + a) % 3;
 }
-/* Returns the letter x, y or z of the caller's axis of turned coordinate a, in the current call. */
+/* The current call may have turned the axes. Returns the caller's letter, x, y or z, for axis a. */
 static inline char mcor_axis_letter(const mcor_context* context, int a)
 {
   return "xyz"[mcor_plane_axis(&context->plane, a)];

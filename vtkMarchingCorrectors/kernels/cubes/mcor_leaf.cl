@@ -27,8 +27,8 @@ int2 mcor_leaf_place(const mcor_leaf* leaf, int x, int y, int z, bool finer)
                    (x >> 1 & 3) + 4 * (y >> 1 & 3) + 16 * (z >> 1 & 3));
 }
 
-/* Returns slot and number of node (x, y, z). The slot is of the leaf's level if that level has the
- * node in a slot, else of the finer level. */
+/* Returns the slot of node (x, y, z), and the node's number in it. If the leaf's own level has a
+ * slot with this node, returns that slot, else the finer level's. */
 int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
 {
   z = leaf->plane ? 0 : z;

@@ -96,9 +96,9 @@ typedef struct
   realv count, offset[3];
 } mcor_crowd;
 
-/* Finds c[l], the weight sums at the particles j with lengths s[l] h_j, for `levels` factors s, the
- * largest first. Sums over the particles within `reach` h_j. Also fills in the mcor_crowd `crowd`
- * unless it is NULL. Each lane has its own reach, so its sum does not depend on the other lanes. */
+/* Finds weight sums at particles, one particle j in each lane. c[l]: the sums with the lengths
+ * s[l] * h_j. s: `levels` factors, the largest first. A sum is over the particles closer to j than
+ * reach * h_j, so it does not depend on other lanes. Also fills in `crowd` unless it is NULL. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
   realv* c, mcor_crowd* crowd)

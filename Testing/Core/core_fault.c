@@ -36,32 +36,32 @@ static int fails(const char* name, int kind)
   return 1;
 }
 
-/* A driver's functions before core_fault.c put its own into the driver's table. */
+/* The functions that a driver had in its table before core_fault.c put others there. */
 typedef struct real_driver
 {
-  cl_icd_dispatch* table;
+  const cl_icd_dispatch* table;
   cl_icd_dispatch functions;
 } real_driver;
 
-static real_driver drivers[16];
-
-/* Returns the real functions of the driver that made an object. */
-static const cl_icd_dispatch* real(const void* object)
+/* Returns the driver with this table, or an empty place for it. */
+static real_driver* find_driver(const cl_icd_dispatch* table)
 {
-  const real_driver* driver = drivers;
-  while (driver->table != mcor_driver(object))
+  static real_driver drivers[64];
+  real_driver* driver = drivers;
+  for (; driver->table && driver->table != table; ++driver)
   {
-    ++driver;
   }
-  return &driver->functions;
+  return driver;
 }
+
+#define REAL(object) (find_driver(mcor_driver(object))->functions)
 
 /* Defines try_NAME, which fails or calls the driver's NAME. object: the parameter that says which driver is called. */
 #define FAULT_CALL(name, object, parameters, arguments)                                            \
   static cl_int try_##name parameters                                                              \
   {                                                                                                \
     const int kind = strcmp(#name, "clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
-    return fails(#name, kind) ? fail_with : (real(object)->name)arguments;                         \
+    return fails(#name, kind) ? fail_with : (REAL(object).name)arguments;                          \
   }
 
 /* If CORE_SHADOWS is set, writes once more to the whole buffer that the host has written to (see
@@ -72,7 +72,7 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
   static cl_int try_##name parameters                                                              \
   {                                                                                                \
     return fails(#name, COMMAND) ? fail_with                                                       \
-                                 : write_again(queue, mem, (real(queue)->name)arguments);          \
+                                 : write_again(queue, mem, (REAL(queue).name)arguments);           \
   }
 
 FAULT_CALL(clBuildProgram, program,
@@ -109,7 +109,7 @@ static cl_int try_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, vo
   cl_uint waits, const cl_event* wait, cl_event* event)
 {
   const cl_int error = write_again(
-    queue, mem, (real(queue)->clEnqueueUnmapMemObject)(queue, mem, mapped, waits, wait, event));
+    queue, mem, (REAL(queue).clEnqueueUnmapMemObject)(queue, mem, mapped, waits, wait, event));
   return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
 }
 
@@ -126,7 +126,7 @@ static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error)
   {
     error = clEnqueueReadBuffer(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL);
     error = error == CL_SUCCESS
-      ? (real(queue)->clEnqueueWriteBuffer)(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
+      ? (REAL(queue).clEnqueueWriteBuffer)(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
       : error;
   }
   free(data);
@@ -145,7 +145,7 @@ static cl_int try_clGetProgramBuildInfo(cl_program program, cl_device_id device,
 {
   if (!build_log)
   {
-    return (real(program)->clGetProgramBuildInfo)(program, device, info, size, value, needed);
+    return (REAL(program).clGetProgramBuildInfo)(program, device, info, size, value, needed);
   }
   assert_int_equal(info, CL_PROGRAM_BUILD_LOG);
   if (needed)
@@ -166,7 +166,7 @@ static cl_int try_clGetProgramBuildInfo(cl_program program, cl_device_id device,
 static cl_int try_clReleaseMemObject(cl_mem mem)
 {
   atomic_fetch_sub(&live_buffers, 1);
-  return getenv("CORE_SHADOWS") ? CL_SUCCESS : (real(mem)->clReleaseMemObject)(mem);
+  return getenv("CORE_SHADOWS") ? CL_SUCCESS : (REAL(mem).clReleaseMemObject)(mem);
 }
 
 /* Decides whether a call that returns a new object fails. Sets *error if it fails. */
@@ -187,10 +187,10 @@ static cl_context try_clCreateContext(const cl_context_properties* properties, c
   const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
   void* user, cl_int* error)
 {
-  device_now = devices[0];
+  device_now = *devices;
   return fails_to_make("clCreateContext", error)
     ? NULL
-    : (real(devices[0])->clCreateContext)(properties, count, devices, notify, user, error);
+    : (REAL(*devices).clCreateContext)(properties, count, devices, notify, user, error);
 }
 
 static cl_int fill(cl_context context, cl_mem mem, size_t size, unsigned char byte)
@@ -211,7 +211,7 @@ static cl_mem try_clCreateBuffer(
 {
   cl_mem mem = fails_to_make("clCreateBuffer", error)
     ? NULL
-    : (real(context)->clCreateBuffer)(context, flags, size, host, error);
+    : (REAL(context).clCreateBuffer)(context, flags, size, host, error);
   const char* byte = getenv("CORE_FILL");
   if (mem && byte)
   {
@@ -227,7 +227,7 @@ static void* try_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool 
 {
   return fails_to_make("clEnqueueMapBuffer", error)
     ? NULL
-    : (real(queue)->clEnqueueMapBuffer)(
+    : (REAL(queue).clEnqueueMapBuffer)(
         queue, mem, blocking, flags, offset, size, waits, wait, event, error);
 }
 
@@ -235,26 +235,21 @@ static cl_kernel try_clCreateKernel(cl_program program, const char* name, cl_int
 {
   return fails_to_make("clCreateKernel", error)
     ? NULL
-    : (real(program)->clCreateKernel)(program, name, error);
+    : (REAL(program).clCreateKernel)(program, name, error);
 }
 
 /* Puts the try_ functions above in place of a driver's own, also where its table is constant. */
 static void replace_functions(cl_icd_dispatch* table)
 {
-  int i = 0;
-  while (drivers[i].table && drivers[i].table != table)
-  {
-    ++i;
-    assert_in_range(i, 0, sizeof drivers / sizeof *drivers - 1);
-  }
-  if (drivers[i].table)
+  const size_t size = offsetof(cl_icd_dispatch, clCreateCommandQueueWithProperties);
+  const size_t past = (size_t)table % (size_t)sysconf(_SC_PAGESIZE);
+  real_driver* driver = find_driver(table);
+  if (driver->table)
   {
     return;
   }
-  const size_t size = offsetof(cl_icd_dispatch, clCreateCommandQueueWithProperties);
-  drivers[i].table = table;
-  memcpy(&drivers[i].functions, table, size);
-  const size_t past = (size_t)table % (size_t)sysconf(_SC_PAGESIZE);
+  driver->table = table;
+  memcpy(&driver->functions, table, size);
   assert_int_equal(mprotect((char*)table - past, past + size, PROT_READ | PROT_WRITE), 0);
   table->clBuildProgram = try_clBuildProgram;
   table->clCreateBuffer = try_clCreateBuffer;

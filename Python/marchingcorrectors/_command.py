@@ -15,7 +15,7 @@ from . import _film, _structs as c, io
 from ._arrays import Found
 from ._call import Keywords, Ranges, own_keywords
 from ._functions import free_surface, gauge, isosurface, probe
-from ._library import InvalidArgument, lib, say
+from ._library import InvalidArgument, lib, say, warn
 from .io.convert import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of
 from ._surface import save_npz, writing
@@ -273,6 +273,8 @@ def run_probe(given, particles, points, make, command):
                 mesh.save(given.output)
         except ValueError:  # PyVista does not know the ending.
             raise InvalidArgument(f"The output is a {COMMANDS[command][2]} file, not '{os.path.basename(given.output)}'.") from None
+    if found.statistics["fluid_particles"] and not found.valid.any():
+        warn(say("POINTS_DRY"))
     return f"{len(points)} points, {int(found.valid.sum())} of them in the fluid"
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pyvista
 from test_files import Case
+from says import says  # after test_files, by which it is found
 
 DAM = str(Path(os.environ["MCOR_TEST_DATA"]) / "dam_break_45k.vtp")
 PROGRAM = os.environ.get("MCOR_TEST_PROGRAM")
@@ -150,6 +151,8 @@ class Command(Case):
         mine, its = map(pyvista.read, self.run_it("line", "a.vtp", *FLUID, "--line", "-1,0,0,3,0,0", "--resolution", "50"))
         np.testing.assert_allclose(mine.points, its.points, atol=1e-6)
         np.testing.assert_array_equal(mine["vtkValidPointMask"], its["vtkValidPointMask"])
+        self.run_it("line", "a.vtp", *FLUID, "--line", "9,9,9,10,10,10", "--quiet")
+        self.assertRegex(self.said, "^marchingcorrectors: warning: " + says("POINTS_DRY") + "\n$")
 
     def test_sentences(self):
         for words, sentence in ((["--field", "sum"], "--field is not for the free surface"),

@@ -22,6 +22,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHSay.h"
 #include "vtkThreshold.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -191,7 +192,7 @@ std::string Describe(vtkDataSet* data, std::string& fault)
   {
     const auto valid = std::count(mask->Begin(), mask->End(), 1);
     line << "points      " << data->GetNumberOfPoints() << ", " << valid << " of them valid\n";
-    fault = valid > 0 ? "" : "no point is in the fluid; check where the points are";
+    fault = valid > 0 ? "" : vtkSPHSay(MCOR_SAY(POINTS_DRY));
   }
   else
   {

@@ -209,10 +209,8 @@ static mcor_status mcor_extract_body(
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface)
 {
-  if (!context || !surface)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !surface, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "surface");
   *surface = (mcor_surface){ 0 };
   MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
     "input and options");

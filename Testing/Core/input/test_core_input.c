@@ -280,6 +280,7 @@ static void test_null_arguments(void** state)
   mcor_surface surface = { .point_count = 3 };
   assert_int_equal(mcor_extract(NULL, &call.input, &call.options, &surface), MCOR_INVALID_ARGUMENT);
   assert_int_equal(mcor_extract(context, &call.input, &call.options, NULL), MCOR_INVALID_ARGUMENT);
+  assert_true(core_told(context, "NULL_POINTER|surface must not"));
   assert_int_equal(mcor_extract(context, NULL, &call.options, &surface), MCOR_INVALID_ARGUMENT);
   assert_int_equal(surface.point_count, 0);
   assert_int_equal(mcor_extract(context, &call.input, NULL, &surface), MCOR_INVALID_ARGUMENT);

@@ -235,10 +235,8 @@ static mcor_status mcor_run_derive(
 mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mcor_options* options,
   mcor_gradient form, mcor_derivatives* derivatives)
 {
-  if (!context || !derivatives)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !derivatives, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "derivatives");
   *derivatives = (mcor_derivatives){ 0 };
   MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
     "input and options");

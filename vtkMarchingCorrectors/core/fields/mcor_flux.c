@@ -441,10 +441,8 @@ static mcor_status mcor_run_flux(
 mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_section* sections, int64_t count, mcor_fluxes* fluxes)
 {
-  if (!context || !fluxes)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !fluxes, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "fluxes");
   *fluxes = (mcor_fluxes){ 0 };
   MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && !sections), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "sections");

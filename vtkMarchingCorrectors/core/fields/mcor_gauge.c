@@ -525,10 +525,8 @@ static mcor_status mcor_run_gauge(
 mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges)
 {
-  if (!context || !gauges)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !gauges, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "gauges");
   *gauges = (mcor_gauges){ 0 };
   MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
     MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "lines");

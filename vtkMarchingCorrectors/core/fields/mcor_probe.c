@@ -460,10 +460,8 @@ bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options
 mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_array* points, int64_t count, mcor_samples* samples)
 {
-  if (!context || !samples)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !samples, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "samples");
   *samples = (mcor_samples){ 0 };
   MCOR_FAIL_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
     context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_OR_NEGATIVE), "points");

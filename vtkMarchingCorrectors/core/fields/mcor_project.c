@@ -257,10 +257,8 @@ static mcor_status mcor_run_project(
 static mcor_status mcor_call_project(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const mcor_view* view, bool places_only, mcor_projection* projection)
 {
-  if (!context || !projection)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !projection, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "projection");
   *projection = (mcor_projection){ 0 };
   MCOR_FAIL_IF(!input || !options || !view, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
     "input, options and view");

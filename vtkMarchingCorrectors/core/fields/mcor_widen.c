@@ -237,10 +237,8 @@ static mcor_status mcor_run_widen(
 mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mcor_options* options,
   mcor_widening* widening)
 {
-  if (!context || !widening)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !widening, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "widening");
   *widening = (mcor_widening){ 0 };
   MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
     "input and options");

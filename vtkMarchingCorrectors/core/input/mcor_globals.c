@@ -79,10 +79,8 @@ static mcor_status mcor_measure_all(
 static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool surface, mcor_globals* globals)
 {
-  if (!context || !globals)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
+  MCOR_FAIL_IF(!context || !globals, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
+    "globals");
   *globals = (mcor_globals){ 0 };
   MCOR_FAIL_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER),
     "input and options");

@@ -51,19 +51,19 @@ int core_tear_down(void** state)
   return 0;
 }
 
-void core_create_form(mcor_context** context, const char* form)
+void core_create_with(mcor_context** context, const char* variable, const char* value)
 {
-  const char* kept = getenv("MCOR_DEVICE_FORM");
+  const char* kept = getenv(variable);
   char* last = kept ? core_copy(kept, strlen(kept) + 1) : NULL;
-  setenv("MCOR_DEVICE_FORM", form, 1);
+  setenv(variable, value, 1);
   const mcor_status status = mcor_create_context(NULL, context);
   if (last)
   {
-    setenv("MCOR_DEVICE_FORM", last, 1);
+    setenv(variable, last, 1);
   }
   else
   {
-    unsetenv("MCOR_DEVICE_FORM");
+    unsetenv(variable);
   }
   free(last);
   CORE_OK(*context, status);

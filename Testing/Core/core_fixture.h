@@ -89,8 +89,8 @@ void core_free_block(void* pointer);
 /* Set up and tear down a group of tests whose *state is a mcor_context*. */
 int core_set_up(void** state);
 int core_tear_down(void** state);
-/* Creates a context with the "cpu" or "gpu" form of the kernels, whatever the device is. */
-void core_create_form(mcor_context** context, const char* form);
+/* Creates a context while the environment variable has this value. */
+void core_create_with(mcor_context** context, const char* variable, const char* value);
 
 /* Returns a heap block that holds a copy of exactly these bytes. */
 void* core_copy(const void* data, size_t bytes);

@@ -331,11 +331,8 @@ static void many_slices(void** state)
   CORE_SURFACE with = core_extract(*state, &input, &options);
   CORE_CHECK(without.triangle_count > 2 * MCOR_LIGHT_GRAIN, without.triangle_count);
   check_triangles(&large, &without, &with);
-  setenv("MCOR_THREADS", "1", 1);
   CORE_CONTEXT context = NULL;
-  const mcor_status created = mcor_create_context(NULL, &context);
-  unsetenv("MCOR_THREADS");
-  CORE_OK(context, created);
+  core_create_with(&context, "MCOR_THREADS", "1");
   CORE_SURFACE one = core_extract(context, &input, &options);
   assert_true(core_hash(&one) == core_hash(&with));
 }

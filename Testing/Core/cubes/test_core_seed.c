@@ -202,7 +202,7 @@ static void test_pairs_in_each_form(void** state)
   for (int form = 0; form < 2; ++form)
   {
     CORE_CONTEXT context = NULL;
-    core_create_form(&context, form ? "gpu" : "cpu");
+    core_create_with(&context, "MCOR_DEVICE_FORM", form ? "gpu" : "cpu");
     CORE_SURFACE surface = core_extract(context, &input, &options);
     cells[form] = surface.statistics.seed_cells;
   }

@@ -156,14 +156,12 @@ static void test_building_ahead(void** state)
 static void test_solids_of_parts(void** state)
 {
   CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
-  uint8_t* solid = oracle_allocate(set.count, 1);
   const double iso = 2;
   mcor_input whole = core_input(&set), part = whole;
   mcor_options options = core_options(&iso);
   mcor_globals globals;
-  memset(solid, 0, (size_t)set.count);
-  solid[0] = 1;
-  whole.solid = solid;
+  set.solid[0] = 1;
+  whole.solid = set.solid;
   CORE_OK(*state, mcor_measure_globals(*state, &whole, &options, &globals));
   assert_true(mcor_has_solids(&whole, &options) && !mcor_has_solids(&part, &options));
   options.globals = &globals;
@@ -171,7 +169,6 @@ static void test_solids_of_parts(void** state)
   part.ignore_solids = 1;
   assert_false(mcor_has_solids(&part, &options));
   mcor_free_globals(&globals);
-  free(solid);
 }
 
 int main(void)

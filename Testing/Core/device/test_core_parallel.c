@@ -102,9 +102,7 @@ static void test_cancelled(void** state)
   CORE_CONTEXT context = NULL;
   const double iso = 0;
   const int64_t count = MCOR_SLICES * 64;
-  const char* before = getenv("MCOR_THREADS");
-  setenv("MCOR_THREADS", "1", 1);
-  CORE_OK(context, mcor_create_context(NULL, &context));
+  core_create_with(&context, "MCOR_THREADS", "1");
   mcor_options options = core_options(&iso);
   options.progress = ask;
   context->run.options = &options;
@@ -130,7 +128,6 @@ static void test_cancelled(void** state)
     assert_false(v.strange);
     free(v.elements);
   }
-  before ? setenv("MCOR_THREADS", before, 1) : unsetenv("MCOR_THREADS");
 }
 
 static void test_several_at_once(void** state)
@@ -151,26 +148,20 @@ static void test_several_at_once(void** state)
 /* If several particles are bad, the message names the first one, whichever a thread finds first. */
 static void test_first_bad_particle(void** state)
 {
-  CORE_SET set = core_make_block(40, 0.2, 3, core_ball);
-  assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
-  const double iso = 0;
-  const mcor_input input = core_input(&set);
+  const double iso = 0, bad[3] = { 1e35, -1, NAN };
   const mcor_options options = core_options(&iso);
   for (int kind = 0; kind < 3; ++kind)
   {
-    double* const arrays[] = { set.volume, set.volume, set.scalar };
-    const double good = arrays[kind][1], bad = kind == 0 ? 1e35 : kind == 1 ? -1 : NAN;
+    CORE_SET set = core_make_block(40, 0.2, 3, core_ball);
+    assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
     for (int64_t i = 30007; i < set.count; i += 5000)
     {
-      arrays[kind][i] = bad;
+      (kind < 2 ? set.volume : set.scalar)[i] = bad[kind];
     }
+    const mcor_input input = core_input(&set);
     mcor_surface surface;
-    assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
-    CORE_CHECK(strstr(mcor_last_error(*state), "particle 30007 "), mcor_last_error(*state));
-    for (int64_t i = 30007; i < set.count; i += 5000)
-    {
-      arrays[kind][i] = good;
-    }
+    CORE_FAILS(*state, MCOR_INVALID_DATA, mcor_extract(*state, &input, &options, &surface),
+      "particle 30007 ");
   }
 }
 

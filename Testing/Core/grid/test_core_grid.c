@@ -94,7 +94,7 @@ static void test_crowds(void** state)
   static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },
     { 257, 0 }, { 1000, 130 }, { 1000, 1000 }, { 5000, 700 }, { 20000, 0 }, { 20000, 9000 } };
   CORE_CONTEXT gpu = NULL;
-  core_create_form(&gpu, "gpu");
+  core_create_with(&gpu, "MCOR_DEVICE_FORM", "gpu");
   for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i)
   {
     check_crowd(*state, gpu, counts[i][0], counts[i][1]);

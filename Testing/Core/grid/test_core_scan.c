@@ -210,7 +210,7 @@ static void test_parts(void** state)
     ITEMS = 1000003
   };
   mcor_context* gpu = NULL;
-  core_create_form(&gpu, "gpu");
+  core_create_with(&gpu, "MCOR_DEVICE_FORM", "gpu");
   core_build(gpu, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
   core_extend_program(gpu,
     "__kernel void test_visit(const int count, __global int* visits)\n"

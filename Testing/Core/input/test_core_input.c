@@ -12,17 +12,18 @@ typedef struct bad_call
   particle_set set;
   mcor_input input;
   mcor_options options;
-  double iso[2];
+  double* iso;    /* [2] */
   double* vector; /* [count][3] */
 } bad_call;
 
 static bad_call make_call(void)
 {
-  bad_call call = { .set = core_make_block(4, 0, 1, core_slope), .iso = { 0, 0.2 } };
+  static const double iso[2] = { 0, 0.2 };
+  bad_call call = { .set = core_make_block(4, 0, 1, core_slope) };
   call.input = core_input(&call.set);
   call.vector = core_copy(call.set.position, (size_t)call.set.count * 3 * sizeof(double));
-  call.options = core_options(NULL);
-  call.options.iso_count = 1;
+  call.iso = core_copy(iso, sizeof iso);
+  call.options = core_options(call.iso);
   return call;
 }
 
@@ -30,6 +31,7 @@ static void free_call(bad_call* call)
 {
   particle_set_free(&call->set);
   free(call->vector);
+  free(call->iso);
 }
 
 /* Checks that the call fails with the status and a message in which core_told finds the words. */
@@ -51,7 +53,6 @@ static void expect(
 static void expect_good(mcor_context* context)
 {
   CORE_OWNED(free_call) bad_call call = make_call();
-  call.options.iso_values = call.iso;
   CORE_SURFACE surface = core_extract(context, &call.input, &call.options);
   assert_true(surface.triangle_count > 0);
   assert_string_equal(mcor_last_error(context), "");
@@ -61,7 +62,6 @@ static void expect_good(mcor_context* context)
   do                                                                                               \
   {                                                                                                \
     CORE_OWNED(free_call) bad_call call = make_call();                                             \
-    call.options.iso_values = call.iso;                                                            \
     __VA_ARGS__;                                                                                   \
     expect(context, &call, status, words);                                                         \
   } while (0)
@@ -302,7 +302,6 @@ static void test_empty_results(void** state)
   for (int kind = 0; kind < 5; ++kind)
   {
     CORE_OWNED(free_call) bad_call call = make_call();
-    call.options.iso_values = call.iso;
     call.iso[0] = kind == 2 ? 1e30 : kind == 3 ? -100 : call.set.scalar[0];
     call.options.iso_count = kind != 1;
     call.input.count = kind == 0 ? 0 : kind == 4 ? 1 : call.input.count;
@@ -326,7 +325,6 @@ static void test_endless_range(void** state)
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k)
   {
     CORE_OWNED(free_call) bad_call call = make_call();
-    call.options.iso_values = call.iso;
     call.options.precision = cases[k].precision;
     for (int64_t i = 0; i < call.set.count; ++i)
     {
@@ -355,7 +353,6 @@ static void test_bad_attributes(void** state)
   for (int k = 0; k < 3; ++k)
   {
     CORE_OWNED(free_call) bad_call call = make_call();
-    call.options.iso_values = call.iso;
     const mcor_array attributes[] = { core_array(call.set.volume, 1), core_array(call.vector, 3),
       { .constant = bad[k] }, core_array(call.set.scalar, 1) };
     call.input.attributes = attributes;
@@ -386,7 +383,6 @@ static void test_values_of_solids(void** state)
   for (int k = 0; k < 4; ++k)
   {
     CORE_OWNED(free_call) bad_call call = make_call();
-    call.options.iso_values = call.iso;
     for (int64_t i = 0; i < call.set.count; ++i)
     {
       call.set.solid[i] = i % 3 == 0;
@@ -418,7 +414,6 @@ static void make_vectors(bad_call* call, double unit)
   call->input.scalar.name = "flow";
   call->input.scalar_component = MCOR_MAGNITUDE;
   call->iso[0] = 10 * unit;
-  call->options.iso_values = call->iso;
   call->options.precision = MCOR_FLOAT64;
 }
 
@@ -495,7 +490,6 @@ static void test_units_of_length(void** state)
     }
     call.input.volume = (mcor_array){ 0 };
     call.input.estimate_smoothing_length = 1;
-    call.options.iso_values = call.iso;
     call.options.triangle_normals = 1;
     if (k > 2)
     {
@@ -528,7 +522,6 @@ static void test_far_options(void** state)
     call.options.boundary_detection =
       k % 4 / 2 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     call.options.field = k / 6 % 2 ? MCOR_SUM : MCOR_SHEPARD;
-    call.options.iso_values = call.iso;
     CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     CORE_CHECK(surface.triangle_count == 0, k, surface.triangle_count);
   }

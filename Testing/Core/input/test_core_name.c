@@ -109,6 +109,9 @@ static void test_iso_values(void** state)
   CORE_FREED double* value = oracle_allocate(count, sizeof *value);
   CORE_FREED double* sorted = oracle_allocate(count, sizeof *sorted);
   CORE_FREED uint8_t* solid = oracle_allocate(count, 1);
+  const mcor_input input = {
+    .count = count, .scalar = { value, MCOR_FLOAT64, 1, 0, "A" }, .solid = solid
+  };
   for (int kind = 0; kind < 8; ++kind)
   {
     int64_t fluid = 0;
@@ -128,9 +131,6 @@ static void test_iso_values(void** state)
       }
     }
     qsort(sorted, (size_t)fluid, sizeof *sorted, mcor_compare_doubles);
-    const mcor_input input = {
-      .count = count, .scalar = { value, MCOR_FLOAT64, 1, 0, "A" }, .solid = solid
-    };
     double range[2], iso;
     assert_true(mcor_find_iso_value(&input, NULL, range, &iso));
     assert_true(range[0] == sorted[0] && range[1] == sorted[fluid - 1]);
@@ -143,11 +143,8 @@ static void test_iso_values(void** state)
     CORE_CHECK(fabs(iso - expected) <= (kind == 3 ? 1e-12 : 0), kind, iso, expected);
   }
   memset(solid, 1, count);
-  const mcor_input none = {
-    .count = count, .scalar = { value, MCOR_FLOAT64, 1, 0, "A" }, .solid = solid
-  };
   double range[2] = { 1, 2 }, iso = 3;
-  assert_false(mcor_find_iso_value(&none, NULL, range, &iso));
+  assert_false(mcor_find_iso_value(&input, NULL, range, &iso));
   assert_true(range[0] == 1 && range[1] == 2 && iso == 3);
 }
 

@@ -366,56 +366,48 @@ static mcor_status sum_on_rank(core_rank* rank, void* data)
 {
   rank_sums* job = data;
   mcor_message why;
+  mcor_status status = MCOR_OK;
   const int64_t count = job->set->count;
   mcor_options options = *job->options;
   options.ranks = &rank->ranks;
-  double *at = oracle_allocate(3 * count, sizeof *at),
-         *lengths = oracle_allocate(count, sizeof *lengths);
-  int64_t *number = oracle_allocate(count, sizeof *number), own = 0;
-  for (int64_t i = 0; i < count; ++i)
+  CORE_FREED double* at = oracle_allocate(3 * count, sizeof *at);
+  CORE_FREED double* lengths = oracle_allocate(count, sizeof *lengths);
+  CORE_FREED int64_t* number = oracle_allocate(count, sizeof *number);
+  mcor_input input = { .positions = core_array(at, 3) };
+  int64_t own = 0;
+  for (int all = 0; all < 2; ++all)
   {
-    const int slab = (int)(job->set->position[3 * i] / 1.5 * rank->world->count);
-    if ((slab < rank->world->count ? slab : rank->world->count - 1) == rank->number)
+    for (int64_t i = 0; i < count; ++i)
     {
-      memcpy(at + 3 * own, job->set->position + 3 * i, 3 * sizeof *at);
-      number[own++] = i;
-    }
-  }
-  mcor_input input = { .count = own, .positions = core_array(at, 3) };
-  mcor_status status = mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why);
-  for (int64_t i = 0; i < count; ++i)
-  {
-    int is_near = 0;
-    for (int64_t k = 0; k < own && number[k] != i && !is_near; ++k)
-    {
-      double square = 0;
-      for (int a = 0; a < 3; ++a)
+      const double* x = job->set->position + 3 * i;
+      const bool is_own = (int)(x[0] / 1.5 * rank->world->count) == rank->number;
+      bool is_taken = is_own && !all;
+      for (int64_t k = 0; k < own && !is_own && !is_taken; ++k)
       {
-        const double period = options.periodic[2 * a + 1] - options.periodic[2 * a],
-                     d = job->set->position[3 * i + a] - at[3 * k + a],
-                     least = period > 0 ? d - period * round(d / period) : d;
-        square += least * least;
+        double square = 0;
+        for (int a = 0; a < 3; ++a)
+        {
+          const double period = options.periodic[2 * a + 1] - options.periodic[2 * a],
+                       d = x[a] - at[3 * k + a],
+                       least = period > 0 ? d - period * round(d / period) : d;
+          square += least * least;
+        }
+        is_taken = sqrt(square) < 1.25 * 2 * lengths[k];
       }
-      is_near = sqrt(square) < 1.25 * 2 * lengths[k];
+      if (is_taken)
+      {
+        memcpy(at + 3 * input.count, x, 3 * sizeof *at);
+        number[input.count++] = i;
+      }
     }
-    for (int64_t k = 0; k < own && is_near; ++k)
-    {
-      is_near = number[k] != i;
-    }
-    if (is_near)
-    {
-      memcpy(at + 3 * input.count++, job->set->position + 3 * i, 3 * sizeof *at);
-    }
+    own = all ? own : input.count;
+    MCOR_THEN(status, mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why));
   }
-  MCOR_THEN(status, mcor_find_smoothing_lengths(&input, &options, 1.3, own, lengths, &why));
   job->held[rank->number] = input.count;
   for (int64_t k = 0; k < own; ++k)
   {
     job->wrong[rank->number] += lengths[k] != job->whole[number[k]];
   }
-  free(at);
-  free(lengths);
-  free(number);
   return status;
 }
 

@@ -218,31 +218,3 @@ def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
         f'Origin="{origin}" Spacing="{spacing}"><Piece Extent="{extent}"></Piece></ImageData></VTKFile>'
         if path.suffix == ".vti" else "# vtk DataFile Version 3.0\nimage\nASCII\nDATASET STRUCTURED_POINTS\n"
         f"DIMENSIONS {extent}\nORIGIN {origin}\nSPACING {spacing}\n")
-
-
-def unpacked(text):
-    """Unpacks an array that VTK has packed with LZ4. A header of four numbers precedes one block of sequences. Each sequence has bytes to
-    copy, and says which earlier bytes to repeat: where they begin, and how many."""
-    blocks, _, _, _ = struct.unpack("<4I", base64.b64decode(text[:24])[:16])
-    assert blocks == 1
-    block, at, data = base64.b64decode(text[24:]), 0, bytearray()
-
-    def length(short):
-        nonlocal at
-        total = short
-        while short in (15, 255):
-            short = block[at]
-            total, at = total + short, at + 1
-            short = 255 if short == 255 else 0
-        return total
-
-    while at < len(block):
-        token, at = block[at], at + 1
-        literals = length(token >> 4)
-        data += block[at:at + literals]
-        at += literals
-        if at < len(block):
-            back, at = block[at] | block[at + 1] << 8, at + 2
-            for _ in range(length(token & 15) + 4):
-                data.append(data[-back])
-    return bytes(data)

@@ -7,11 +7,9 @@ Other tests check what the program computes. This test checks files, options, me
 import json
 import os
 import re
-import struct
 import subprocess
 import sys
 import xml.etree.ElementTree
-import zlib
 
 import particle_files as files
 from command_line_test import FIRST_COMPILATION, ISO, CommandLineTest, main, says
@@ -19,29 +17,15 @@ from command_line_test import FIRST_COMPILATION, ISO, CommandLineTest, main, say
 
 def read_png(path):
     """Returns the width, the height and the rows of (r, g, b) of a PNG file."""
-    data = path.read_bytes()
-    at, packed = 8, b""
-    while at < len(data):
-        size, kind = struct.unpack_from(">I4s", data, at)
-        body = data[at + 8:at + 8 + size]
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack_from(">IIBB", body)
-        packed += body if kind == b"IDAT" else b""
-        at += size + 12
-    assert (depth, color) == (8, 2)
-    raw, rows, before = zlib.decompress(packed), [], bytes(3 * width)
-    for y in range(height):
-        kind, *line = raw[y * (3 * width + 1):(y + 1) * (3 * width + 1)]
-        if kind == 2:
-            line = [(byte + up) & 255 for byte, up in zip(line, before)]
-        for x in range(3 * width) if kind in (1, 3, 4) else ():
-            left, up, corner = line[x - 3] if x >= 3 else 0, before[x], before[x - 3] if x >= 3 else 0
-            if kind == 4 and not left == up == corner:
-                left = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
-            line[x] = (line[x] + ((left + up) // 2 if kind == 3 else left)) & 255
-        before = line
-        rows.append([tuple(line[x:x + 3]) for x in range(0, 3 * width, 3)])
-    return width, height, rows
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOImage import vtkPNGReader
+
+    reader = vtkPNGReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3)  # The lowest row is first.
+    return width, height, [[tuple(pixel) for pixel in row] for row in pixels[::-1].tolist()]
 
 
 class Usage(CommandLineTest):

@@ -4,10 +4,11 @@
 import csv
 import math
 import re
-import struct
 
 import particle_files as files
 from command_line_test import ISO, CommandLineTest, column, main, read_table, says
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 SIDE = 20
 
@@ -104,8 +105,11 @@ class Plane(CommandLineTest):
         self.refuse(self.run_program(self.input, table, *ISO), 1, "holds the points of lines")
 
     def point_values(self, name):
-        kind, text = re.search(f'type="Float(32|64)" Name="{name}"[^>]*>\\s*([^<\\s]*)', self.output.read_text()).groups()
-        return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(self.output))
+        reader.Update()
+        surface = reader.GetOutput()
+        return vtk_to_numpy(surface.GetPoints().GetData() if name == "Points" else surface.GetPointData().GetArray(name)).ravel().tolist()
 
     def test_what_is_refused(self):
         """Tests cases that are refused. The last one is refused before lines are made: one particle with a small smoothing length makes all

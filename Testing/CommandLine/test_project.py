@@ -3,11 +3,11 @@
 """Tests projections of the program: test_project.py PROGRAM PRELOAD."""
 import math
 import re
-import struct
-import xml.etree.ElementTree
 
 import particle_files as files
 from command_line_test import CommandLineTest, main, says
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
 
 class Project(CommandLineTest):
@@ -23,15 +23,12 @@ class Project(CommandLineTest):
         return self.read(self.image)
 
     def read(self, path):
-        image = xml.etree.ElementTree.parse(path).getroot().find("ImageData")
-        array, = image.iter("DataArray")
-        extent = list(map(int, image.get("WholeExtent").split()))
-        size = [high - low + 1 for low, high in zip(extent[::2], extent[1::2])]
-        data = files.unpacked(array.text.strip())
-        values = struct.unpack(f"<{len(data) // 8}d", data)
-        self.assertEqual(len(values), math.prod(size))
-        spacing = list(map(float, image.get("Spacing").split()))
-        return array.get("Name"), size, spacing, values
+        reader = vtkXMLImageDataReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        image, data = reader.GetOutput(), reader.GetOutput().GetPointData()
+        self.assertEqual((data.GetNumberOfArrays(), data.GetArray(0).GetDataTypeAsString()), (1, "double"))
+        return data.GetArrayName(0), list(image.GetDimensions()), image.GetSpacing(), vtk_to_numpy(data.GetArray(0)).tolist()
 
     def test_image(self):
         name, size, spacing, values = self.project("--project", "y", "--resolution", "20")

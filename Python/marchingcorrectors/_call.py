@@ -115,6 +115,8 @@ def prepare(positions, words, attributes=None, named=None, wants=(), nothing="no
     arguments.request.update((name, number(name, kind_of(name), options.pop(name))) for name in (
         "smoothing_length_is_support_radius", "scalar_component", "ignore_solids") if name in options)
     arguments.complete(wants, units.options(options), nothing)
+    if arguments.request["scalar_component"] != -1 and arguments.input.scalar.components == 1:
+        raise InvalidArgument("scalar_component is for vectors, and the scalar has one component; leave it out.")
     if "flow" not in wants:
         arguments.set_attributes(attributes)
     return arguments

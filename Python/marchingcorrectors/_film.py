@@ -18,7 +18,7 @@ from ._library import Error, InvalidArgument, in_shell, warn
 from ._options import PROBE
 from ._surface import CELLS, Surface
 from ._usd import Film, Spray, find_velocity, is_usd
-from .io._particles import TIMES, Particles, usual
+from .io._particles import TIMES, NoPoints, Particles, usual
 from .io.convert import convert
 from .io.vtk_files import XmlFile, list_pieces, list_times
 
@@ -95,7 +95,10 @@ def run_particles(given, surface_of):
     paths = in_order(given.input)
 
     def load(path, step, time):
-        particles = io.read(path, step=step, walls=given.walls)
+        try:
+            particles = io.read(path, step=step, walls=given.walls)
+        except NoPoints:
+            particles = Particles(Path(path).name, "VTK", lambda: np.empty((0, 3)), {})
         return particles, time if particles.time is None or given.time_step is not None else particles.time
 
     def add(film, particles, time):
@@ -186,7 +189,7 @@ def between(before, after, first, last, time, velocity=None):
             if told / 2 <= moved <= told * 2:
                 s = share
                 made[own] = ((1 + 2 * s) * (1 - s) ** 2 * a + s * s * (3 - 2 * s) * b + span * s * (1 - s) * ((1 - s) * u - s * v))
-            elif moved:
+            elif moved > 0:
                 warn(f"From {before.file} to {after.file} particles move {moved / max(told, 1e-300):.3g} times as far as their "
                      "velocities say, so positions between are linear. Perhaps the times are in another unit.")
             made[alone] += (time - (first, last)[share >= 0.5]) * near.arrays[name][alone]

@@ -239,6 +239,11 @@ class Formats(CommandLineTest):
         for bad in (data[:2000], data[:2002] + b"\xf5" + data[2003:]):  # With the second file HDF5 prints more when the program ends.
             damaged.write_bytes(bad)
             self.refuse(self.extract("--free-surface", source=damaged), 1, "damaged.vtkhdf cannot be read: ")
+        size = struct.pack("<BBB5xQQ", 1, 1, 1, 3, 3)  # of a data set of three values; the file's last one has offsets of an array's steps
+        data = (HERE / "film.vtkhdf").read_bytes()
+        at = data.rindex(size)
+        damaged.write_bytes(data[:at] + struct.pack("<BBB5xQQ", 1, 1, 1, 1, 3) + data[at + len(size):])
+        self.refuse(self.extract("--free-surface", source=f"{damaged}#2"), 1, "it has no step 2 in 'Steps/PointDataOffsets/")
         for name in ("link", "storage", "virtual"):  # The file is refused whether or not the file that it points to exists.
             self.refuse(self.extract("--free-surface", source=HERE / f"{name}.vtkhdf"), 1,
                         "its 'VTKHDF/PointData/Secret' lies in another file, which is not opened")

@@ -82,7 +82,7 @@ class Project(CommandLineTest):
     def test_given_in_vain(self):
         for more in ([], ["--scalar", "Kind"]):
             told = self.run_good(self.input, self.image, "--project", "z", "--volume", "Density", "--mass", "9", *more, says=".*").stderr
-            self.assertRegex(told, says("SIZE_BESIDE_VOLUME", "mass is") if more else "^$")
+            self.assertRegex(told, says("SIZE_BESIDE_VOLUME", "mass is") if more else says("SIZE_BESIDE_MASS", "volume is"))
 
     def test_steps_without_fluid(self):
         """The image of a step without particles has the pixels (number and size) of the nearest step with particles. The values are 0, or

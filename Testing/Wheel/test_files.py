@@ -515,9 +515,14 @@ class Layouts(Case):
         self.assertEqual((first["n"].tolist(), first.time, first.times), ([3, 4], 0, [0, 0.5, 2]))
         self.assertEqual(quietly(io.read, self.at("run.pvd"), step=1)["n"].tolist(), [3, 4, 1, 2, 3, 4])
         self.assertEqual(len(quietly(io.read, self.at("run.pvd"), step=-1)), 0)
+        self.at("other.vtp").write_text(self.at("b.vtp").read_text().replace('"n"', '"m"'))
+        with self.assertWarnsRegex(mc.InputWarning, says("ARRAYS_NOT_SHARED", "m, n")):
+            self.assertEqual(dict(io.read([self.at("b.vtp"), self.at("other.vtp")]).arrays), {})
+        self.assertEqual(io.read([self.at("none.vtp"), self.at("b.vtp")])["n"].tolist(), [3, 4])
         for kind, tag, sentence in (
                 ("x.pvtp", "a", "lists no pieces"), ("x.pvtp", 'Piece Source="all.pvtp"', "is no .vtp file"),
                 ("x.pvd", "a", "lists no files"), ("x.pvd", entry("late", 0, "a.vtp"), "time 'late' is no number"),
+                ("x.pvd", entry("inf", 0, "a.vtp"), "time 'inf' is no number"),
                 ("x.pvd", entry(0, 0, "run.pvd"), "lists run.pvd, which is no file"),
                 ("x.pvtp", 'Piece Source="gone.vtp"', "there is no such file")):
             write_list(kind, "PPolyData" if kind == "x.pvtp" else "Collection", [tag])

@@ -144,6 +144,19 @@ class Films(Case):
         data.save(steps[0])
         self.assertRegex(self.run_it("surface", *steps, "c.usdc", *WORDS, "--times", "0.05", status=1), "step_9.vtp has no ids")
 
+    def test_steps_without_particles(self):
+        """A file without points is a step without fluid. If the first step of a list cannot be read, the others are made."""
+        first, *_ = self.write_steps(times=[0.0])
+        pyvista.PolyData().save(self.at("step_99.vtp"))
+        self.run_it("surface", first, "step_99.vtp", "a.usdc", *WORDS, "--time-step", "1", "--fps", "1")
+        Path(self.at("run.pvd")).write_text('<VTKFile type="Collection"><Collection>' + "".join(
+            f'<DataSet timestep="{time}" file="{name}"/>' for time, name in enumerate(("gone.vtp", "step_9.vtp", "step_99.vtp"))) +
+            "</Collection></VTKFile>")
+        self.assertRegex(self.run_it("surface", "run.pvd", "b.usdc", *WORDS, "--fps", "1", status=1), "gone.vtp.*\\n(.*\\n)*.*lacks 1 of 3 steps")
+        for name, codes in (("a.usdc", [0, 1]), ("b.usdc", [1, 2])):
+            points = self.open(name)[1]["surface"].GetAttribute("points")
+            self.assertEqual((points.GetTimeSamples(), len(points.Get(codes[0])) > 0, len(points.Get(codes[1]))), (codes, True, 0))
+
     def test_convert(self):
         """Converting the program's surfaces, given as a list or one by one, makes the same film as the command `surface`."""
         paths = self.write_steps()

@@ -155,6 +155,10 @@ class Results(unittest.TestCase):
             with self.assertRaisesRegex(mc.InvalidArgument, words):
                 mc.probe(POSITIONS, POSITIONS[:5], outputs=outputs, smoothing_length=H, attributes={"d": DISTANCE})
 
+    def test_component_of_a_number(self):
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar_component is for vectors"):
+            sphere(scalar_component=1)
+
     def test_widening(self):
         """Smoothing lengths multiplied by the factors of widening(), with the volumes of the original lengths, make the same
         surface as `widen` if cubes have one size."""

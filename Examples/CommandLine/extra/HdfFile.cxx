@@ -249,14 +249,15 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
   }
   std::vector<vtkTypeInt64> parts = file.Values<vtkTypeInt64Array>("NumberOfPoints");
   long long offset = 0;
+  const auto of = [&file, step](const std::string& list)
+  {
+    const std::vector<vtkTypeInt64> numbers = file.Values<vtkTypeInt64Array>(list);
+    file.Check(
+      step < numbers.size(), "it has no step " + std::to_string(step) + " in '" + list + "'");
+    return numbers[step];
+  };
   if (hasSteps)
   {
-    const auto of = [&file, step](const std::string& list)
-    {
-      const std::vector<vtkTypeInt64> numbers = file.Values<vtkTypeInt64Array>(list);
-      file.Check(step < numbers.size(), "it has no step " + std::to_string(step));
-      return numbers[step];
-    };
     const long long first = of("Steps/PartOffsets");
     const long long count = file.Has("Steps/NumberOfParts") ? of("Steps/NumberOfParts") : 1;
     offset = of("Steps/PointOffsets");
@@ -277,8 +278,7 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
   for (const std::string& array : file.Names("PointData"))
   {
     const std::string own = "Steps/PointDataOffsets/" + array;
-    const long long begin =
-      hasSteps && file.Has(own) ? file.Values<vtkTypeInt64Array>(own).at(step) : offset;
+    const long long begin = hasSteps && file.Has(own) ? of(own) : offset;
     if (const vtkSmartPointer<vtkDataArray> values = file.Read("PointData/" + array, begin, total))
     {
       values->SetName(array.c_str());

@@ -239,6 +239,11 @@ void AddPieces(
   }
   run.Surface->ShallowCopy(split->GetOutput());
   AddNumbers(run.Statistics, "Pieces", { static_cast<double>(pieces->GetNumberOfRows()) });
+  if (pieces->GetNumberOfRows() == 0 && NumberOf(run.Statistics, "Triangles") > 0.0)
+  {
+    run.Warnings.emplace_back(
+      "the surface is empty: --least-volume or --least-particles leaves out all of its pieces");
+  }
   for (const auto& [name, column] : { std::pair("Area", "area"), std::pair("Volume", "volume") })
   {
     if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))

@@ -15,7 +15,8 @@ from typing import Any, Iterator, Sequence, Union
 import numpy as np
 
 from .._arrays import tells_of_walls
-from ._particles import FileError, Particles, add_velocity, choose_step, ending_of, join, join_bodies, read_head, usual_quantities
+from ._particles import (FileError, NoPoints, Particles, add_velocity, choose_step, ending_of, join, join_bodies, read_head, shared_arrays,
+                         usual_quantities)
 from .binary import order_of, read_bgeo, read_bi4, read_gadget_binary, read_phantom_dump
 from .vtk_files import list_pieces, list_series, list_times, read_xml
 
@@ -72,7 +73,12 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 def count_steps(path: PathName) -> int:
     """Returns how many steps a file holds. Only .vtkhdf, .xyz, .gro, dumps of LAMMPS, H5Part, .pvd and .series may hold more than one."""
     reader = reader_of(Path(path))
-    return len(read(path).times or [0]) if (reader and reader[2]) or Path(path).suffix.lower() in HDF5 else 1
+    if not (reader and reader[2]) and Path(path).suffix.lower() not in HDF5:
+        return 1
+    try:
+        return len(read(path).times or [0])
+    except FileError:  # A damaged first step says nothing of the other steps.
+        return len(read(path, step=-1).times or [0])
 
 
 def read_steps(path: Union[PathName, Sequence[PathName]], **words: Any) -> Iterator[Particles]:
@@ -185,12 +191,12 @@ def read_bodies(paths, walls, step):
     every = paths + [path for path in walls if path not in paths]
     bodies = [load(path, step) for path in every]
     if not any(len(body.points) or body.times or body.time is not None for body in bodies):  # A step of a film may be empty.
-        raise FileError(f"{paths[0].name} has no points.")
+        raise NoPoints(f"{paths[0].name} has no points.")
     marked = [path in walls or not walls and len(every) > 1 and tells_of_walls(path.stem) for path in every]
     counts = [len(body.points) for body in bodies]
     fluids = [body for body, wall in zip(bodies, marked) if not wall] or bodies
-    common = [name for name in fluids[0].arrays if all(
-        name in body.arrays and body.arrays[name].shape[1:] == fluids[0].arrays[name].shape[1:] for body in fluids)]
+    fluids = [body for body in fluids if len(body.points)] or fluids
+    common = shared_arrays(fluids)
     arrays = {name: lambda n=name: column(n, bodies, fluids) for name in common}
     single = [name for name in common if fluids[0].arrays[name].ndim == 1 and fluids[0].arrays[name].dtype.kind in "fiub"]
     add_velocity(arrays, single)

@@ -36,6 +36,10 @@ class FileError(Error, ValueError):
         super().__init__(sentence if plain == sentence else plain)  # a sentence of the core keeps its code
 
 
+class NoPoints(FileError):
+    """A file holds no points. As a step of a film, it is a step without fluid."""
+
+
 def find_kernel(name):
     """Returns the word of sph_kernel for the name that a file gives to its kernel, or None if the name is not known."""
     plain = "".join(letter for letter in str(name).lower() if letter.isalnum())
@@ -236,6 +240,17 @@ class Body(NamedTuple):
     is_mesh: Optional[bool] = None
 
 
+def shared_arrays(bodies):
+    """Lists the arrays that all bodies have, with as many components. Warns of all others."""
+    first = bodies[0].arrays
+    shared = [name for name in first if name != GHOSTS and all(
+        name in body.arrays and body.arrays[name].shape[1:] == first[name].shape[1:] for body in bodies)]
+    lost = sorted({name for body in bodies for name in body.arrays} - {GHOSTS, *shared})
+    if lost:
+        warn(say("ARRAYS_NOT_SHARED", ", ".join(lost)))
+    return shared
+
+
 def join_bodies(bodies):
     """Joins several bodies to one, with the arrays that all non-empty bodies have. Leaves out points that belong to another body (vtkGhostType),
     and points of meshes if other bodies have vertices."""
@@ -248,10 +263,7 @@ def join_bodies(bodies):
     if len(parts) > 1 or GHOSTS in parts[0].arrays:
         own = [np.flatnonzero(np.asarray(body.arrays.get(GHOSTS, np.zeros(len(body.points), int))).astype(int) & 1 == 0)
                for body in parts]
-        first = parts[0].arrays
-        names = [name for name in first if name != GHOSTS and all(
-            name in body.arrays and body.arrays[name].shape[1:] == first[name].shape[1:] for body in parts)]
-        arrays = {name: np.concatenate([body.arrays[name][mine] for body, mine in zip(parts, own)]) for name in names}
+        arrays = {name: np.concatenate([body.arrays[name][mine] for body, mine in zip(parts, own)]) for name in shared_arrays(parts)}
         return parts[0]._replace(points=np.concatenate([body.points[mine] for body, mine in zip(parts, own)]), arrays=arrays)
     return parts[0]
 

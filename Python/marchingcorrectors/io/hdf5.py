@@ -353,11 +353,18 @@ def read_vtkhdf(path, step):
             raise FileError(f"{path.name} holds data of the type '{kind}', not particles (PolyData or UnstructuredGrid).")
         parts, offset, times = integers(root, "NumberOfPoints"), 0, None
         steps, arrays = get(root, "Steps"), get(root, "PointData")
+
+        def of_step(name):
+            found = integers(steps, name)
+            if i >= len(found):
+                raise FileError(f"{path.name} has no step {i} in 'Steps/{name}'.")
+            return found[i]
+
         if steps is not None:
             times = [float(time) for time in np.ravel(data_set(steps, "Values")[()])]
             i = choose_step(path.name, step, times)
-            first, offset = integers(steps, "PartOffsets")[i], integers(steps, "PointOffsets")[i]
-            count = integers(steps, "NumberOfParts")[i] if get(steps, "NumberOfParts") is not None else 1
+            first, offset = of_step("PartOffsets"), of_step("PointOffsets")
+            count = of_step("NumberOfParts") if get(steps, "NumberOfParts") is not None else 1
             if min(first, count, offset) < 0 or first + count > len(parts):
                 raise FileError(f"{path.name} has no parts {first} to {first + count} of step {i}.")
             parts = parts[first:first + count]
@@ -374,6 +381,6 @@ def read_vtkhdf(path, step):
         for name in names:
             begin = offset
             if steps is not None and get(steps, f"PointDataOffsets/{name}") is not None:
-                begin = integers(steps, f"PointDataOffsets/{name}")[i]
+                begin = of_step(f"PointDataOffsets/{name}")
             found[name] = values(data_set(arrays, name), begin)
     return Body(points, found, None if times is None else times[i], times=times)

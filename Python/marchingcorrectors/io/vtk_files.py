@@ -318,6 +318,8 @@ def list_times(path):
     for entry in elements(path, "DataSet"):
         try:
             time = float(entry.get("timestep") or 0)
+            if not np.isfinite(time):
+                raise ValueError
         except ValueError:
             raise FileError(f"{path.name}: the time '{entry.get('timestep')}' is no number.") from None
         if not entry.get("file"):

@@ -381,6 +381,34 @@ static void test_errors(void** state)
   assert_int_equal(found.unused.code, MCOR_SAYS_LENGTH_IN_VAIN);
 }
 
+/* A flux uses no masses beside volumes and densities. A projection of the density uses masses alone. */
+static void test_unused_beside_the_density(void** state)
+{
+  const mcor_named arrays[] = { real("h", h), real("V2", volume), real("Density", density),
+    of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32), real("Mass", mass) };
+  /* count: of the arrays, from the first one on. */
+  const struct
+  {
+    unsigned wants;
+    int count;
+    mcor_role given;
+    const char* unused;
+  } cases[] = { { MCOR_WANT_FLOW, 4, MCOR_ROLE_MASS, "SIZE_BESIDE_VOLUME|mass is" },
+    { MCOR_WANT_FLOW, 4, MCOR_ROLE_DENSITY, NULL },
+    { MCOR_WANT_COLUMN, 5, MCOR_ROLE_DENSITY, "SIZE_BESIDE_MASS|volume is" },
+    { MCOR_WANT_COLUMN, 4, MCOR_ROLE_DENSITY, NULL } };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
+  {
+    mcor_request request = request_of(MCOR_WANT_SIZES | cases[c].wants);
+    request.names[MCOR_ROLE_VOLUME] = "V2";
+    request.values[cases[c].given] = 8;
+    CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
+    find(&request, arrays, cases[c].count, &found);
+    CORE_CHECK(cases[c].unused ? core_tells(&found.unused, cases[c].unused) : !found.unused.text, c,
+      found.unused.text);
+  }
+}
+
 /* The sum "Density" uses masses even if volumes are given. */
 static void test_unused_beside_the_sum(void** state)
 {
@@ -408,4 +436,5 @@ static void test_walls(void** state)
 }
 
 CORE_MAIN(NULL, NULL, test_volumes, test_elements, test_one_view, test_fluid,
-  test_scalar_and_attributes, test_errors, test_unused_beside_the_sum, test_walls)
+  test_scalar_and_attributes, test_errors, test_unused_beside_the_density,
+  test_unused_beside_the_sum, test_walls)

@@ -375,7 +375,9 @@ static mcor_message mcor_describe_unused(
                                              : "density is";
   return request->estimate_smoothing_length && (given & MCOR_THE_LENGTH)
     ? mcor_say(MCOR_SAY(LENGTH_IN_VAIN))
-    : idle == 0                      ? MCOR_NO_MESSAGE
+    : idle == 0 ? MCOR_NO_MESSAGE
+    : used == MCOR_THE_MASS && !request->compute_volumes
+    ? mcor_say(MCOR_SAY(SIZE_BESIDE_MASS), words)
     : request->compute_volumes       ? mcor_say(MCOR_SAY(SIZE_BESIDE_COMPUTED), words)
     : used & given & MCOR_THE_VOLUME ? mcor_say(MCOR_SAY(SIZE_BESIDE_VOLUME), words)
     : used & MCOR_THE_VOLUME ? mcor_say(MCOR_SAY(SIZE_BESIDE_ARRAY), words, volumes ? volumes : "")
@@ -421,14 +423,18 @@ static void mcor_find_sizes(mcor_finder* f)
   const bool is_density =
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
   /* Masses and densities that do not give volumes may be used for something else; then they are not
-   * reported as unused. A flux uses them besides volumes. So does a projection without a scalar
-   * array, because it integrates the density. The scalar MCOR_SUMMED uses masses. */
-  const bool uses_all = (r->wants & MCOR_WANT_FLOW) != 0 || is_density;
+   * reported as unused. Besides volumes, a flux uses densities, or masses if there are no densities.
+   * A projection without a scalar array sums masses; without masses it integrates densities. The
+   * scalar MCOR_SUMMED uses masses. */
+  const bool is_flow = (r->wants & MCOR_WANT_FLOW) != 0;
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
+  const unsigned density = known & MCOR_THE_DENSITY ? MCOR_THE_DENSITY : MCOR_THE_MASS;
+  const unsigned also = is_sum ? MCOR_THE_MASS : is_flow || is_density ? density : 0;
   if (!(r->wants & MCOR_WANT_LIST))
   {
-    f->found->unused = mcor_describe_unused(r, uses_all ? given & MCOR_THE_LENGTH : given,
-      used | (is_sum ? MCOR_THE_MASS : 0), views[MCOR_ROLE_VOLUME].name);
+    f->found->unused = mcor_describe_unused(r, given,
+      is_density && (known & MCOR_THE_MASS) ? MCOR_THE_MASS : used | also,
+      views[MCOR_ROLE_VOLUME].name);
   }
 }
 

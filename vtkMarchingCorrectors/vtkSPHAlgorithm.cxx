@@ -9,6 +9,7 @@
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHBlocks.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -260,6 +261,10 @@ int vtkSPHAlgorithm::RequestData(
   this->WarnOfMesh(all, particles);
   const bool isSecond = this->GetParticlesPort() > 0;
   this->Particles = isSecond ? this->JoinParticles(particles) : nullptr;
+  if ((isSecond || this->TakesTogether()) && vtkRun::Make(this)->IsFirst())
+  {
+    this->WarnOnce(WARN_LOST_ARRAYS, vtkSPHDescribeLost(particles, this->JoinParticles(particles)));
+  }
   vtkDataObject* input = isSecond ? vtkDataObject::GetData(inputVector[0]) : particles;
   auto* tree = vtkDataObjectTree::SafeDownCast(input);
   vtkDataObjectTree* apart = this->TakesTogether() ? nullptr : tree;

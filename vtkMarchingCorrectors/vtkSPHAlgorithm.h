@@ -476,6 +476,7 @@ protected:
   {
     WARN_TYPE_ARRAY = 100, ///< an array that tells fluid from solids is not used
     WARN_WALL_BLOCK,       ///< a block of walls is taken by itself
+    WARN_LOST_ARRAYS,      ///< some blocks lack arrays
     WARN_UNUSED,           ///< a setting has no effect
     WARN_SINGLE_POINTS     ///< single precision is too coarse for the output's points
   };

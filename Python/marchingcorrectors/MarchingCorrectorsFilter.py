@@ -43,8 +43,8 @@ from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import Sentence, describe_warnings, devices, lib, say, take_sentence, take_text
 from marchingcorrectors._options import BOUNDS, OUTPUTS, camel
 from marchingcorrectors._vtk import (Particles, abstract_arrays_of, add_iso_values, add_nearest, add_run, build_mesh, choose_array, copy_of,
-                                     describe_mesh, find_period, is_single, join_blocks, leaves_of, list_all, name_of, request_of, sets_of,
-                                     take_vertices, varies)
+                                     describe_lost, describe_mesh, find_period, is_single, join_blocks, leaves_of, list_all, name_of,
+                                     request_of, sets_of, take_vertices, varies)
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
@@ -91,6 +91,14 @@ NO_RUN = None, None, None, None
 def snake(name):
     """Returns the name that VTK 9.4 and later give a property in Python: CubeSize becomes cube_size."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+
+
+def look_at(*arguments, **more):
+    """Returns Particles, with what is found of them, and whether nothing is missing."""
+    try:
+        return Particles(*arguments, **more), True
+    except InvalidArgument as error:
+        return error.particles, False
 
 
 def with_properties(kind):
@@ -323,11 +331,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         smoothing lengths, and the number of cells without a scalar."""
         choice = self._choice()
         self._settle(choice, points)
-        with suppress(Error):
-            ahead["Array"] = ahead["Array"] or name_of(Particles(choice, points, ["fluid", "array"]).scalar)
+        ahead["Array"] = ahead["Array"] or name_of(look_at(choice, points, ["fluid", "array"])[0].scalar)
         with suppress(Error):
             particles = self._find(choice, points, ["fluid", "scalar"])
-            ahead["Fluid"] = particles.describe_fluid()
             if not choice.FreeSurface:
                 ends, value = find_iso_value(particles.input) or ((), 0.0)
                 if ends:
@@ -335,8 +341,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
                     ahead["IsoValue"] = ahead["IsoValue"] if before else value
                     ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
-        with suppress(Error):
-            sizes = Particles(choice, points, ["fluid", "sizes"], options=self._options(choice))
+        sizes, is_usable = look_at(choice, points, ["fluid", "sizes"], options=self._options(choice))
+        ahead["Fluid"] = sizes.describe_fluid()
+        if is_usable:
             ahead["FreeSurface"] |= sizes.has_free_surface()
             ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(sizes.input), None, choice.Dimension)
             ahead["Cells"] += sizes.estimate_cells()
@@ -358,6 +365,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._process_blocks(taken, output)
             return 1
         particles = self._join(taken)
+        self._warn_once("lost arrays", describe_lost(taken, particles))
         if particles is not data:
             output.GetFieldData().PassData(particles.GetFieldData())
         self._process(particles, output)

@@ -14,7 +14,7 @@ from ._arrays import QUANTITIES, Found, as_points
 from ._call import Keywords, own_keywords
 from ._library import InvalidArgument, warn
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, camel, did_you_mean, show
-from ._vtk import GHOSTS, WALL_BLOCK, describe_mesh, find_period, join_blocks, named, take_vertices, to_numpy
+from ._vtk import GHOSTS, WALL_BLOCK, describe_lost, describe_mesh, find_period, join_blocks, named, take_vertices, to_numpy
 from .io import Particles as FileParticles
 
 if TYPE_CHECKING:
@@ -251,7 +251,12 @@ class BlocksAccessor:
         self._blocks = blocks
 
     def __getattr__(self, name):
-        return getattr(SphAccessor(pyvista.wrap(join_blocks(take_vertices(self._blocks)))), name)
+        taken = take_vertices(self._blocks)
+        joined = join_blocks(taken)
+        said = describe_lost(taken, joined)
+        if said:
+            warn(said)
+        return getattr(SphAccessor(pyvista.wrap(joined)), name)
 
     def __dir__(self):
         return dir(SphAccessor)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray, vtkPoints, vtkStringArray, vtkTypeInt64Array
+from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray, vtkDoubleArray, vtkPoints, vtkStringArray, vtkTypeInt64Array
 from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkDataObject, vtkDataObjectTree, vtkPartitionedDataSet, vtkPointSet, vtkPolyData,
                                            vtkUnstructuredGrid)
 
@@ -214,22 +214,26 @@ def list_all(data):
 
 
 def join_array(sets, like, joined):
-    """Joins an array's values, one block after the other, and adds the array to `joined`. Walls that lack the array get the first values of
-    `like`. Adds nothing if a fluid block lacks the array, if a block of walls lacks an array that tells kinds of particles apart, or if a
-    block's array of this name has another type or size."""
-    made, name = like.NewInstance(), name_of(like)
+    """Joins an array's values, one block after the other, as doubles if their types differ, and adds the array to `joined`. Walls that lack
+    the array get the first values of `like`. Adds nothing if a fluid block lacks the array, if a block of walls lacks an array that tells
+    kinds of particles apart, or if a block's array of this name has another size, or only one of the two holds numbers."""
+    name = name_of(like)
+    arrays = [block.GetPointData().GetAbstractArray(name) for block, _ in sets]
+    fits = [array is not None and (array.IsNumeric(), array.GetNumberOfComponents(), array.GetNumberOfTuples()) == (
+        like.IsNumeric(), like.GetNumberOfComponents(), block.GetNumberOfPoints()) for array, (block, _) in zip(arrays, sets)]
+    differ = any(fit and array.GetDataType() != like.GetDataType() for array, fit in zip(arrays, fits))
+    made = vtkDoubleArray() if differ else like.NewInstance()
     made.SetName(name)
     made.SetNumberOfComponents(like.GetNumberOfComponents())
     made.CopyComponentNames(like)
     made.SetNumberOfTuples(joined.GetNumberOfPoints())
     at, is_type = 0, name_priority(name, "particle_type") >= 0
-    for block, wall in sets:
-        array, count = block.GetPointData().GetAbstractArray(name), block.GetNumberOfPoints()
+    for (block, wall), array, fit in zip(sets, arrays, fits):
+        count = block.GetNumberOfPoints()
         if array is None and wall and not is_type:
             for i in range(count):
                 made.InsertTuple(at + i, 0, like)
-        elif array is None or (array.GetDataType(), array.GetNumberOfComponents(), array.GetNumberOfTuples()) != (
-                like.GetDataType(), like.GetNumberOfComponents(), count):
+        elif not fit:
             return
         else:
             made.InsertTuples(at, count, 0, array)
@@ -252,7 +256,8 @@ def join_blocks(tree):
     joined.SetPoints(points)
     for block, _ in sets:
         for array in abstract_arrays_of(block.GetPointData()):
-            if name_of(array) and not joined.GetPointData().HasArray(name_of(array)):
+            is_whole = array.GetNumberOfTuples() == block.GetNumberOfPoints()
+            if name_of(array) and is_whole and not joined.GetPointData().HasArray(name_of(array)):
                 join_array(sets, array, joined)
     if some:
         marks = np.array([wall for _, wall in sets], bool)
@@ -260,6 +265,13 @@ def join_blocks(tree):
     for data in reversed(list_all(tree)):  # If several arrays have one name, the first stays.
         joined.GetFieldData().PassData(data.GetFieldData())
     return joined
+
+
+def describe_lost(blocks, joined):
+    """Returns a sentence that names the arrays of blocks that join_blocks() did not take, or ""."""
+    lost = {name_of(array) for block in sets_of(blocks) for array in abstract_arrays_of(block.GetPointData())
+            if name_of(array) and not joined.GetPointData().HasArray(name_of(array))} - {GHOSTS}
+    return say("ARRAYS_NOT_SHARED", ", ".join(sorted(lost))) if lost else ""
 
 
 # -- quantities --

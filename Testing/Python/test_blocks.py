@@ -132,7 +132,7 @@ class TestApart(unittest.TestCase):
 class TestTogether(unittest.TestCase):
     def test_one_set(self):
         """Blocks that are one set, in any order and beside empty blocks, give the bits that the undivided set gives. An array that one
-        block lacks is left out. The joined set is kept as long as the blocks stay the same."""
+        block lacks is left out, with a warning. The joined set is kept as long as the blocks stay the same."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         first, second = take(data, ~left), timed(take(data, left))
@@ -140,7 +140,8 @@ class TestTogether(unittest.TestCase):
         whole, extract = sphere(data), sphere(blocks_of(first, blocks_of(second), vtkPolyData(), vtkImageData()))
         for settings in ({}, {"Value": (0, 0.7)}):
             expected, (surface, told) = run(whole, **settings)[0], run(extract, **settings)
-            self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
+            self.assertEqual((len(told), extract.GetErrorMessage()), (1, ""))
+            self.assertRegex(told[0], says("ARRAYS_NOT_SHARED", "Own"))
             self.assertTrue(surface_of(surface) == surface_of(expected))
             self.assertEqual(statistics_of(extract), statistics_of(whole))
         self.assertTrue(surface.GetFieldData().HasArray("TimeValue"))
@@ -150,16 +151,22 @@ class TestTogether(unittest.TestCase):
         self.assertFalse(surface_of(run(extract)[0]) == surface_of(expected))
         self.assertTrue(run(extract, **APART)[0].IsA("vtkMultiBlockDataSet"))
 
-    def test_widths_that_differ(self):
-        """An array that has one component in a block and two in another is left out."""
+    def test_arrays_that_differ(self):
+        """An array that has one component in a block and two in another is left out, and so is one without values in a wall; a warning names
+        them. An array of floats in a block and of integers in another is joined."""
         data = cube()
         left = points_of(data)[:, 0] < 0.05
         halves = take(data, left), take(data, ~left)
-        for half, width in zip(halves, (1, 2)):
-            add(half, Pair=numpy.ones((half.GetNumberOfPoints(), width)))
+        for half, width, kind in zip(halves, (1, 2), (numpy.float32, numpy.int64)):
+            add(half, Pair=numpy.ones((half.GetNumberOfPoints(), width)), Mixed=numpy.full(half.GetNumberOfPoints(), 7, kind))
+        add(halves[0], None_=numpy.ones(0))
         surface, told = run(sphere(blocks_of(*halves)))
-        self.assertEqual(told, [])
+        self.assertEqual(len(told), 1)
+        self.assertRegex(told[0], says("ARRAYS_NOT_SHARED", "None_, Pair"))
         self.assertFalse(surface.GetPointData().HasArray("Pair"))
+        numpy.testing.assert_allclose(values_of(surface, "Mixed"), 7, rtol=1e-6)
+        told = run(sphere(blocks_of(halves[0], Boundary=halves[1])), DetectFluid=1)[1]
+        self.assertRegex("".join(told), says("ARRAYS_NOT_SHARED", "None_, Pair"))
 
     def test_walls(self):
         """One block has a name that means walls, and lacks the scalar. If the filter detects the fluid, this block counts as walls, else as fluid."""

@@ -58,10 +58,11 @@ void vtkSPHSign(std::vector<std::uint64_t>& signature, double number)
   signature.push_back(bits);
 }
 
-vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count)
+vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(
+  vtkAbstractArray* array, vtkIdType count, int type)
 {
-  auto made =
-    vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(array->GetDataType()));
+  auto made = vtkSmartPointer<vtkAbstractArray>::Take(
+    vtkAbstractArray::CreateArray(type == VTK_VOID ? array->GetDataType() : type));
   made->SetName(array->GetName());
   made->SetNumberOfComponents(array->GetNumberOfComponents());
   made->CopyComponentNames(array);

@@ -44,8 +44,9 @@ std::string vtkSPHListNames(vtkPointSet* points);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 void vtkSPHSign(std::vector<std::uint64_t>& signature, double number);
 
-/** Makes an array of `count` tuples that has this array's name, type and components. */
-vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);
+/** Makes an array of `count` tuples that has this array's name, components and, by default, type. */
+vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(
+  vtkAbstractArray* array, vtkIdType count, int type = VTK_VOID);
 
 /** Copies the tuples `ids`, in this order, of all arrays, also of normals and of global ids. */
 VTKMARCHINGCORRECTORS_EXPORT void vtkSPHTakeTuples(

@@ -6,6 +6,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkPartitionedDataSet.h"
@@ -19,39 +20,51 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Blocks = std::vector<vtkPointSet*>;
 
-bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
+/**
+ * Returns the block's array that has the name of `like`. Returns null if there is none, if it has
+ * another number of components or tuples, or if only one of the two arrays holds numbers.
+ */
+vtkAbstractArray* FindArray(vtkPointSet* block, vtkAbstractArray* like)
 {
   vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(like->GetName());
-  return array && array->GetDataType() == like->GetDataType() &&
+  const bool fits = array && array->IsNumeric() == like->IsNumeric() &&
     array->GetNumberOfComponents() == like->GetNumberOfComponents() &&
     array->GetNumberOfTuples() == block->GetNumberOfPoints();
+  return fits ? array : nullptr;
 }
 
 /**
- * Joins each block's array that has the name of `first`, one block after the other. The points
- * of a wall that lacks the array get the first tuple of `first`; but if `first` is an array of
- * particle types, walls must have it, too. Returns null if a block lacks the array and must have it,
- * or if a block's array of this name has another type or size.
+ * Joins each block's array that has the name of `first`, one block after the other, as doubles if
+ * their types differ. The points of a wall that lacks the array get the first tuple of `first`; but
+ * if `first` is an array of particle types, walls must have it, too. Returns null if a block lacks
+ * the array and must have it, or if a block's array of this name does not fit.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
 {
-  vtkSmartPointer<vtkAbstractArray> joined = vtkSPHMakeLike(first, total);
+  const bool differ = std::any_of(blocks.begin(), blocks.end(),
+    [first](vtkPointSet* block)
+    {
+      const auto* array = FindArray(block, first);
+      return array && array->GetDataType() != first->GetDataType();
+    });
+  const auto joined = vtkSPHMakeLike(first, total, differ ? VTK_DOUBLE : first->GetDataType());
   const bool isType = mcor_name_priority(MCOR_PARTICLE_TYPE, first->GetName()) >= 0;
   vtkIdType at = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     const vtkIdType count = blocks[b]->GetNumberOfPoints();
     vtkPointData* data = blocks[b]->GetPointData();
-    if (HasArray(blocks[b], first))
+    if (vtkAbstractArray* array = FindArray(blocks[b], first))
     {
-      joined->InsertTuples(at, count, 0, data->GetAbstractArray(first->GetName()));
+      joined->InsertTuples(at, count, 0, array);
     }
     else if (walls.empty() || !walls[b] || isType || data->HasArray(first->GetName()))
     {
@@ -234,7 +247,8 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
     {
       vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(i);
-      const bool isNew = array->GetName() && !joined->GetPointData()->HasArray(array->GetName());
+      const bool isNew = array->GetName() && FindArray(block, array) &&
+        !joined->GetPointData()->HasArray(array->GetName());
       if (const auto all = isNew ? JoinArrays(blocks, walls, array, total) : nullptr)
       {
         joined->GetPointData()->AddArray(all);
@@ -259,6 +273,29 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     joined->GetFieldData()->PassData(each->GetFieldData());
   }
   return joined;
+}
+
+std::string vtkSPHDescribeLost(vtkDataObject* blocks, vtkPointSet* joined)
+{
+  std::set<std::string> lost;
+  for (vtkPointSet* block : vtkSPHListPointSets(blocks))
+  {
+    for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      const char* name = block->GetPointData()->GetAbstractArray(i)->GetName();
+      if (name && !joined->GetPointData()->HasArray(name))
+      {
+        lost.insert(name);
+      }
+    }
+  }
+  lost.erase(vtkDataSetAttributes::GhostArrayName());
+  std::string names;
+  for (const std::string& name : lost)
+  {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names.empty() ? names : vtkSPHSay(MCOR_SAY(ARRAYS_NOT_SHARED), names.c_str());
 }
 
 void vtkSPHSplitBlocks(

@@ -44,7 +44,7 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
 
 /**
  * Joins the points of all blocks that are point sets, one block after the other, with the point
- * arrays that all of them have (same name, type and number of components). If the names of some
+ * arrays that all of them have (same name and number of components). If the names of some
  * blocks, but not of all, tell of walls, the array MCOR_WALL_BLOCK is 1 for particles of walls. An
  * array that only walls lack is kept, unless it tells the particles' types; its values for the walls
  * mean nothing. If `fluidArray` names a block, see vtkSPHListFluidBlocks(), all other blocks are
@@ -52,6 +52,10 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
+
+/** Returns a warning that names the arrays of blocks that vtkSPHJoinBlocks() did not take; else no text. */
+VTKMARCHINGCORRECTORS_EXPORT std::string vtkSPHDescribeLost(
+  vtkDataObject* blocks, vtkPointSet* joined);
 
 /** Lists "Block: NAME", to be used as name of the fluid array, for each different name of a block; nothing if there is only one name. */
 std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);

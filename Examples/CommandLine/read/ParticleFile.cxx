@@ -10,7 +10,6 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkIntArray.h"
 #include "vtkMultiBlockDataSet.h"
@@ -196,6 +195,16 @@ vtkSmartPointer<vtkAbstractArray> AsNumbers(const std::string& file, vtkAbstract
   return numbers.Get();
 }
 
+/// Prints a note, unless it is empty or `isSaid`: of a film, the note of the first step.
+void NoteOnce(bool& isSaid, const std::string& note)
+{
+  if (!note.empty() && !isSaid)
+  {
+    isSaid = true;
+    Say("note: " + note);
+  }
+}
+
 /// Returns the points, their arrays, and the field data that tell a period, without the cells. haveVertices: if the
 /// file has a mesh, only the points of vertices are returned, and a note about the other points is printed.
 vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool haveVertices)
@@ -204,14 +213,11 @@ vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool hav
   const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, haveVertices);
   auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
-  static bool isSaid = false; // the note is printed once, with the first step of a film
-  if (others > 0 && !isSaid)
-  {
-    isSaid = true;
-    Say("note: " +
-      vtkSPHSay(MCOR_SAY(MESH_NODES), static_cast<long long>(others),
-        static_cast<long long>(all->GetNumberOfPoints()), " of ", file.c_str()));
-  }
+  static bool isSaid = false;
+  NoteOnce(isSaid,
+    others == 0 ? ""
+                : vtkSPHSay(MCOR_SAY(MESH_NODES), static_cast<long long>(others),
+                    static_cast<long long>(all->GetNumberOfPoints()), " of ", file.c_str()));
   particles->SetPoints(data->GetPoints());
   for (vtkAbstractArray* array : ArraysOf(data->GetPointData()))
   {
@@ -324,11 +330,12 @@ std::string ParticleFileEndings()
   return ListEndings(ParticleFormats);
 }
 
-vtkSmartPointer<vtkPointSet> ReadParticles(const std::vector<std::string>& files, bool mayBeEmpty)
+vtkSmartPointer<vtkPointSet> ReadParticles(
+  const std::vector<std::string>& files, bool mayBeEmpty, bool areWalls)
 {
   const ParticleSets sets = ReadSets(files);
   Require(!sets.Sets.empty() || mayBeEmpty, files.front() + " holds no points");
-  return JoinSets(sets);
+  return JoinSets(sets, areWalls);
 }
 
 std::vector<double> ListTimes(const std::string& name)
@@ -357,7 +364,7 @@ double StoredTimeStep(const std::vector<std::string>& files)
 
 vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files)
 {
-  return files.empty() ? nullptr : ReadParticles(files);
+  return files.empty() ? nullptr : ReadParticles(files, false, true);
 }
 
 void OpenSources(const std::vector<std::string>& files)
@@ -416,10 +423,9 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count
   return sets;
 }
 
-vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
+vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool areWalls)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> parts;
-  std::map<std::string, std::set<int>> types; // the types that an array has in the parts
   for (const auto& [file, points] : sets.Sets)
   {
     const vtkSmartPointer<vtkPolyData> part = TakeParticles(file, points, sets.HaveVertices);
@@ -429,9 +435,7 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
     }
     for (vtkAbstractArray* array : ArraysOf(part->GetPointData()))
     {
-      const vtkSmartPointer<vtkAbstractArray> values = AsNumbers(file, array);
-      part->GetPointData()->AddArray(values);
-      types[values->GetName()].insert(values->GetDataType());
+      part->GetPointData()->AddArray(AsNumbers(file, array));
     }
     if (!sets.AreParts)
     {
@@ -443,19 +447,11 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (const vtkSmartPointer<vtkPolyData>& part : parts)
   {
-    for (vtkAbstractArray* array : ArraysOf(part->GetPointData()))
-    {
-      const std::set<int>& found = types[array->GetName()];
-      if (found.size() > 1 && !found.count(VTK_STRING))
-      {
-        vtkNew<vtkDoubleArray> values; // arrays that have different types would be left out
-        values->DeepCopy(array);
-        part->GetPointData()->AddArray(values);
-      }
-    }
     blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
   }
   const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
+  static bool isSaid = false;
+  NoteOnce(isSaid, areWalls ? "" : vtkSPHDescribeLost(blocks, joined));
   if (!parts.empty())
   {
     joined->SetFieldData(parts.front()->GetFieldData());

@@ -28,21 +28,27 @@ def arrays_of(surface):
 
 
 def add(data, **arrays):
-    """Adds point arrays: {name: values}."""
+    """Adds point arrays to the data, and returns it. arrays: {name: values, or a vtkAbstractArray}."""
     for name, values in arrays.items():
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array = values if hasattr(values, "GetName") else numpy_to_vtk(np.ascontiguousarray(values), deep=True)
         array.SetName(name)
         data.GetPointData().AddArray(array)
     return data
 
 
-def take(whole, indices):
-    """Returns the points with these indices, with their arrays and the whole's field data, but without cells."""
-    part = vtkPolyData()
+def particles_of(points, **arrays):
+    result = vtkPolyData()
+    result.SetPoints(vtkPoints())
+    result.GetPoints().SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
+    return add(result, **arrays)
+
+
+def take(whole, chosen):
+    """Returns the chosen points, with their arrays and the whole's field data, but without cells."""
+    arrays = {array.GetName(): vtk_to_numpy(array)[chosen] for array in arrays_of(whole)}
+    part = particles_of(vtk_to_numpy(whole.GetPoints().GetData())[chosen], **arrays)
     part.SetFieldData(whole.GetFieldData())
-    part.SetPoints(vtkPoints())
-    part.GetPoints().SetData(numpy_to_vtk(vtk_to_numpy(whole.GetPoints().GetData())[indices], deep=True))
-    return add(part, **{array.GetName(): vtk_to_numpy(array)[indices] for array in arrays_of(whole)})
+    return part
 
 
 def write(part, file):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
-from particle_pieces import arrays_of, read, take
+from particle_pieces import add, arrays_of, particles_of, read, take
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkParallelMPI import vtkMPIController
@@ -20,7 +20,7 @@ from vtkmodules.vtkParallelMPI4Py import vtkMPI4PyCommunicator
 from marchingcorrectors import vtkMarchingCorrectors, vtkSPHComponents, vtkSPHDerivatives, vtkSPHProbe
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "Python"))
-from vtk_test import add, particles_of, take_step  # noqa: E402
+from vtk_test import take_step  # noqa: E402
 
 COMM = MPI.COMM_WORLD
 RANK, COUNT = COMM.Get_rank(), COMM.Get_size()

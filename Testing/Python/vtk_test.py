@@ -5,13 +5,14 @@ import sys
 from pathlib import Path
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_STRING, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_STRING
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkMultiBlockDataSet
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[1] / "Mpi")]
+from particle_pieces import add, arrays_of, particles_of, take  # noqa: E402, F401
 from says import says  # noqa: E402, F401
 
 SPACING, H = 0.1, 0.13
@@ -23,22 +24,6 @@ def lattice(*sides, around_origin=False):
     """Returns places SPACING apart in a block. sides: how many along x, y and z. x varies slowest."""
     places = numpy.stack(numpy.meshgrid(*map(numpy.arange, sides), indexing="ij"), -1).reshape(-1, 3).astype(float)
     return SPACING * (places - (numpy.array(sides) - 1) / 2 * around_origin)
-
-
-def add(data, **arrays):
-    """Adds point arrays to the data, and returns it. arrays: {name: values, or a vtkAbstractArray}."""
-    for name, values in arrays.items():
-        array = values if hasattr(values, "GetName") else numpy_to_vtk(numpy.ascontiguousarray(values), deep=1)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    return data
-
-
-def particles_of(points, **arrays):
-    result = vtkPolyData()
-    result.SetPoints(vtkPoints())
-    result.GetPoints().SetData(numpy_to_vtk(numpy.ascontiguousarray(points), deep=1))
-    return add(result, **arrays)
 
 
 def cube(kind=float, **arrays):
@@ -71,12 +56,6 @@ def sums_at(particles, values, places):
         w = volume[near] * numpy.where(q < 1, 1 - 1.5 * q ** 2 + 0.75 * q ** 3, 0.25 * (2 - q) ** 3) / numpy.pi / H ** 3
         found.append((w.sum(), w @ values[near]))
     return numpy.array(found).T
-
-
-def take(data, chosen):
-    """Returns the chosen particles, with all arrays."""
-    arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
-    return particles_of(points_of(data)[chosen], **{array.GetName(): vtk_to_numpy(array)[chosen] for array in arrays})
 
 
 def blocks_of(*blocks, **named):
@@ -129,15 +108,13 @@ def points_of(data):
 
 def bytes_of(data):
     """Returns the bytes of the points and of all their arrays."""
-    arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
-    return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays)]
+    return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays_of(data))]
 
 
 def surface_of(data):
     """Returns the bytes of a surface's points, triangles and point arrays, by name."""
-    arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return {"points": points_of(data).tobytes(), "corners": vtk_to_numpy(data.GetPolys().GetConnectivityArray()).tobytes(),
-            **{array.GetName(): bytes(memoryview(array)) for array in arrays}}
+            **{array.GetName(): bytes(memoryview(array)) for array in arrays_of(data)}}
 
 
 def statistics_of(extract):

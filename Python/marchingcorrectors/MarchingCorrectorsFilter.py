@@ -331,7 +331,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         smoothing lengths, and the number of cells without a scalar."""
         choice = self._choice()
         self._settle(choice, points)
-        ahead["Array"] = ahead["Array"] or name_of(look_at(choice, points, ["fluid", "array"])[0].scalar)
+        with suppress(Error):
+            ahead["Array"] = ahead["Array"] or name_of(look_at(choice, points, ["fluid", "array"])[0].scalar)
         with suppress(Error):
             particles = self._find(choice, points, ["fluid", "scalar"])
             if not choice.FreeSurface:
@@ -341,12 +342,13 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
                     ahead["IsoValue"] = ahead["IsoValue"] if before else value
                     ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
-        sizes, is_usable = look_at(choice, points, ["fluid", "sizes"], options=self._options(choice))
-        ahead["Fluid"] = sizes.describe_fluid()
-        if is_usable:
-            ahead["FreeSurface"] |= sizes.has_free_surface()
-            ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(sizes.input), None, choice.Dimension)
-            ahead["Cells"] += sizes.estimate_cells()
+        with suppress(Error):
+            sizes, is_usable = look_at(choice, points, ["fluid", "sizes"], options=self._options(choice))
+            ahead["Fluid"] = sizes.describe_fluid()
+            if is_usable:
+                ahead["FreeSurface"] |= sizes.has_free_surface()
+                ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(sizes.input), None, choice.Dimension)
+                ahead["Cells"] += sizes.estimate_cells()
 
     def _find(self, choice, points, wants, **more):
         if choice.FreeSurface:

@@ -304,11 +304,13 @@ class Particles(Arguments):
         made = [self._wrap(*self.made(i)) if self.found.made[i].name else None for i in range(2)]
         self._arrays += made  # The core numbers the arrays that it made behind the others.
         self.scalar, self.dot = self.array_for("scalar"), self.array_for("scalar_dot")
-        if self.error:
-            error = InvalidArgument(self.error)
+        try:
+            if self.error:
+                raise InvalidArgument(self.error)
+            self.sum_over_neighbours(choice.NeighborRatio)
+        except InvalidArgument as error:
             error.particles = self
-            raise error
-        self.sum_over_neighbours(choice.NeighborRatio)
+            raise
         self.scalar = self._summed.get("Density", self.scalar)
         self.interpolated, self.from_nearest = (
             {name_of(self._arrays[i]): self._arrays[i] for i in indices[:count]} for indices, count in (

@@ -11,6 +11,7 @@
 #include "vtkSPHSay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <iterator>
@@ -148,7 +149,7 @@ bool vtkSPHParticles::Collect(const mcor_ranks* ranks)
   }
   if (this->Error.empty() && this->Found.needs_densities)
   {
-    this->Densities = this->SumNeighbors("Density", 0.0);
+    this->Densities = this->SumNeighbors("Density", -HUGE_VAL);
     if (this->Densities)
     {
       mcor_take_densities(
@@ -256,7 +257,7 @@ std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& opti
   std::int64_t count, double* values)
 {
   mcor_message why;
-  const mcor_status status = ratio > 0.0
+  const mcor_status status = ratio != -HUGE_VAL
     ? mcor_find_smoothing_lengths(&input, &options, ratio, count, values, &why)
     : mcor_sum_densities(&input, &options, count, values, &why);
   const std::string problem = vtkSPHTakeText(why);

@@ -62,7 +62,7 @@ void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequ
 
 /**
  * Lets the core compute, from neighbours, smoothing lengths or densities of the first `count`
- * particles. ratio: the NeighborRatio of smoothing lengths; 0 for densities. Returns why the core
+ * particles. ratio: the NeighborRatio of smoothing lengths; -infinity: densities. Returns why the core
  * failed; an empty text if it did not fail, or was cancelled.
  */
 std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,

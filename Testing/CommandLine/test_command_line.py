@@ -124,8 +124,6 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--kernel", "Wendland"], "not 'Wendland'; did you mean wendland[?]"),
             ([*good, *ISO, "--kernel", "wendland_c2"], "not 'wendland_c2'; did you mean wendland[?]"),
             ([*good, *ISO, "--preview=1"], "--preview takes no value"),
-            ([*good, "--free-surface", "--kernel"], "--kernel needs NAME"),
-            ([*good, "--free-surface", "--iso="], "--iso needs V"),
             ([*good, "--scalar", "--iso", "0.3"], "--scalar needs NAME"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
             ([*good, "--scalar", "Radius", "--iso", "1,x"], "--iso needs a finite number, not 'x'"),
@@ -158,14 +156,11 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--screenshot", "a.png", "--view", "0,0,0"], "--view needs three numbers, not all 0"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
-            ([*good, *ISO, "--resolution", "9"], "--resolution is for slices, lines and projections, not for surfaces; leave it out"),
-            ([*good, "--free-surface", "--velocity", "Velocity"], "--velocity is for fluxes, not for surfaces; leave it out"),
             ([*good, "--slice", "0.1"], "--slice needs an axis and a position, such as z=0.1"),
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
             ([*good, "--line", "0,0,0,1,0,0", "--slice=x=0"], "--line is for lines, not for slices; leave it out"),
             ([*good, "--line", "0,0,0,1,0,0", "--resolution", "1"], "--resolution needs a whole number from 2"),
-            ([*good, "--line", "0,0,0,1,0,0", "--screenshot", "a.png"], "--screenshot is for .* not for lines"),
         ]:
             with self.subTest(sentence):
                 self.refuse(self.run_program(*arguments), 2, sentence)
@@ -419,7 +414,6 @@ class Options(CommandLineTest):
         self.write_points()
         self.refuse_all(1, [(["nothing.vtp"], "nothing.vtp cannot be read"), (["points.obj"], "points.obj"),
                             (["points.vtp", "--mass", "No"], "array 'No'")], "--probe")
-        self.refuse_all(2, [(["points.vtp", *ISO], "--scalar is for .* not for probes; leave it out")], "--probe")
         for output, status, sentence in (("surface.vtu", 1, "for a .vtp or .vtk file, not 'surface.vtu'"),
                                          ("points.vtp", 2, "would overwrite the input")):
             self.refuse(self.run_program(self.input, output, "--probe", "points.vtp"), status, sentence)

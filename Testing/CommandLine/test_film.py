@@ -101,7 +101,6 @@ class Film(CommandLineTest):
         self.one_sentence(result, 1, says("NO_IDS", "--ids"))
         self.good("steps.pvd", "--times", "0.03", "--ids", "Tag")
         self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
-        self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "--ids needs --times or --fps; add one, or leave out --ids")
 
     def test_ranges_of_times(self):
         """--times BEGIN:END:STEP means times from BEGIN to END, STEP apart. With --fps, the times and --slow decide the number of

@@ -43,19 +43,6 @@ void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call)
   }
 }
 
-/* Checks that both sets of options give the same surface, or the same failure. */
-static void fuzz_check_alike(
-  const fuzz_call* call, const mcor_options* options, const mcor_options* others)
-{
-  mcor_context* context = fuzz_context(call, 1);
-  mcor_surface surfaces[2];
-  const mcor_status status = mcor_extract(context, &call->input, options, &surfaces[0]);
-  FUZZ_CHECK(mcor_extract(context, &call->input, others, &surfaces[1]) == status);
-  fuzz_check_same(&surfaces[0], &surfaces[1]);
-  mcor_free_surface(&surfaces[0]);
-  mcor_free_surface(&surfaces[1]);
-}
-
 /* Checks that a run with global values measured from its own input is the same as a run without
  * them. */
 static void fuzz_globals(const fuzz_call* call)
@@ -72,7 +59,12 @@ static void fuzz_globals(const fuzz_call* call)
     FUZZ_CHECK(!globals.components && !globals.splits && globals.measured.fluid_count == 0);
     return;
   }
-  fuzz_check_alike(call, &alone, &given);
+  mcor_surface surfaces[2];
+  const mcor_status status = mcor_extract(context, &call->input, &alone, &surfaces[0]);
+  FUZZ_CHECK(mcor_extract(context, &call->input, &given, &surfaces[1]) == status);
+  fuzz_check_same(&surfaces[0], &surfaces[1]);
+  mcor_free_surface(&surfaces[0]);
+  mcor_free_surface(&surfaces[1]);
   mcor_free_globals(&globals);
 }
 

@@ -21,7 +21,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from particle_pieces import add, corners, difference, read, take, write, write_pieces
+from particle_pieces import add, arrays_of, difference, read, take, write, write_pieces
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
@@ -70,11 +70,14 @@ class Program(unittest.TestCase):
         for word in words:
             self.assertIn(word, sentences[0])
 
-    def check_point_data(self, alone, ranks):
-        for i in range(alone.GetPointData().GetNumberOfArrays()):
-            array = alone.GetPointData().GetArray(i)
-            np.testing.assert_array_equal(vtk_to_numpy(array), vtk_to_numpy(ranks.GetPointData().GetArray(array.GetName())),
-                                          array.GetName())
+    def check_equal(self, alone, ranks):
+        """Fails unless both data sets have the same points, triangles, lines and arrays of points."""
+        pairs = [(array, ranks.GetPointData().GetArray(array.GetName())) for array in arrays_of(alone)]
+        for get in (lambda p: p.GetPoints().GetData(), lambda p: p.GetLines().GetConnectivityArray(),
+                    lambda p: p.GetLines().GetOffsetsArray(), lambda p: p.GetPolys().GetConnectivityArray()):
+            pairs.append((get(alone), get(ranks)))
+        for one, other in pairs:
+            np.testing.assert_array_equal(vtk_to_numpy(one), vtk_to_numpy(other), one.GetName())
 
     def check_surfaces(self, particles, pieces, *how):
         """Fails unless processes that read pieces write one file with the same points, triangles and arrays as one process."""
@@ -82,9 +85,7 @@ class Program(unittest.TestCase):
                 self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
         self.assertGreater(alone.GetNumberOfPolys(), 1000)
-        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
-        np.testing.assert_array_equal(corners(alone), corners(ranks))
-        self.check_point_data(alone, ranks)
+        self.check_equal(alone, ranks)
         return done
 
     def test_one_file(self):
@@ -119,10 +120,7 @@ class Program(unittest.TestCase):
         self.good(self.run_ranks(self.path("pieces.pvtp"), self.path("out.pvtp"), *how, "--quiet"))
         alone, ranks = read(self.path("out.vtp")), read(self.path("out.pvtp"))
         self.assertGreater(alone.GetNumberOfPolys(), 0)
-        for get in (lambda p: p.GetPoints().GetData(), lambda p: p.GetLines().GetConnectivityArray(),
-                    lambda p: p.GetLines().GetOffsetsArray(), lambda p: p.GetPolys().GetConnectivityArray()):
-            np.testing.assert_array_equal(vtk_to_numpy(get(alone)), vtk_to_numpy(get(ranks)))
-        self.check_point_data(alone, ranks)
+        self.check_equal(alone, ranks)
 
     def test_same_file(self):
         """Several processes write the same bytes as one. The surfaces are trimmed at two iso values, with a period, a box, caps or walls.
@@ -174,8 +172,7 @@ class Program(unittest.TestCase):
             for run in self.run_alone, self.run_ranks:
                 self.good(run(pieces, self.path("ranks.vtp"), *how))
                 found = read(self.path("ranks.vtp"))
-                np.testing.assert_array_equal(corners(alone), corners(found))
-                self.check_point_data(alone, found)
+                self.check_equal(alone, found)
                 self.good(run(pieces, self.path("ranks.vtp"), "--scalar", "Speed", "--iso", "2", "--quiet"))
                 kind = read(self.path("ranks.vtp")).GetPointData().GetArray("Steps")
                 self.assertEqual(kind and kind.GetDataTypeAsString(), "double")
@@ -299,11 +296,10 @@ class Program(unittest.TestCase):
                 self.assertRegex(done.stderr, says("PARTICLE_FAR"))
             for file in ("_surface.vtp", ".vtp"):
                 alone, ranks = read(self.path("alone" + file)), read(self.path("ranks" + file))
-                np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
                 self.assertGreater(alone.GetPointData().GetArray("Widening").GetRange()[1], 1.5)
                 self.assertEqual(*([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
                                    for data in (alone.GetPointData(), ranks.GetPointData())))
-                self.check_point_data(alone, ranks)
+                self.check_equal(alone, ranks)
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
 
     def test_names_of_factors(self):

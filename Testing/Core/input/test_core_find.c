@@ -58,8 +58,9 @@ static void test_volumes(void** state)
   const mcor_named all[] = { real("h", h), real("Volume", volume), real("Mass", mass),
     real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
   /* file: letters of the arrays that the file has (v volume, m mass, d density). given: v, m, d: an array by name; M,
-   * D: a value; c: computed volumes; p: one volume for all particles. used: what makes the volumes. unused: what
-   * core_tells finds in the message on unused values; NULL: there is no message. */
+   * D: a value; c: computed volumes; p: one volume for all particles; F: a flux wants them, P: a projection of the
+   * density. used: what makes the volumes. unused: what core_tells finds in the message on unused values; NULL: there
+   * is no message. */
   const struct
   {
     const char *file, *given, *used, *unused;
@@ -75,11 +76,15 @@ static void test_volumes(void** state)
     { "v", "c", "", NULL }, { "vmd", "cD", "Mass/", "SIZE_BESIDE_COMPUTED|density is" },
     { "vmd", "cv", "Mass/", "SIZE_BESIDE_COMPUTED|volume is" }, { "vmd", "p", "Volume", NULL },
     { "m", "p", "9", NULL }, { "md", "p", "Mass/Density", NULL }, { "", "p", "9", NULL },
-    { "m", "pM", "9", "SIZE_BESIDE_ONE_VOLUME|mass is" } };
+    { "m", "pM", "9", "SIZE_BESIDE_ONE_VOLUME|mass is" },
+    { "d", "vMF", "V2", "SIZE_BESIDE_VOLUME|mass is" }, { "", "vMF", "V2", NULL },
+    { "m", "vDF", "V2", NULL }, { "", "vDP", "V28", NULL },
+    { "m", "vDP", "V2Mass/", "SIZE_BESIDE_MASS|volume is" }, { "d", "vMP", "V27/", "SIZE_BESIDE_MASS" } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
-    mcor_named arrays[7] = { all[0], all[4], all[5], all[6] };
-    int count = 4;
+    mcor_named arrays[8] = { all[0], all[4], all[5], all[6],
+      of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32) };
+    int count = 5;
     for (int k = 0; k < 3; ++k)
     {
       if (strchr(cases[c].file, "vmd"[k]))
@@ -87,8 +92,9 @@ static void test_volumes(void** state)
         arrays[count++] = all[1 + k];
       }
     }
-    mcor_request request = request_of(MCOR_WANT_SIZES);
     const char* given = cases[c].given;
+    mcor_request request = request_of(MCOR_WANT_SIZES | (strchr(given, 'F') ? MCOR_WANT_FLOW : 0) |
+      (strchr(given, 'P') ? MCOR_WANT_COLUMN : 0));
     request.names[MCOR_ROLE_VOLUME] = strchr(given, 'v') ? "V2" : NULL;
     request.names[MCOR_ROLE_MASS] = strchr(given, 'm') ? "M2" : "(automatic)";
     request.names[MCOR_ROLE_DENSITY] = strchr(given, 'd') ? "D2" : "";
@@ -381,34 +387,6 @@ static void test_errors(void** state)
   assert_int_equal(found.unused.code, MCOR_SAYS_LENGTH_IN_VAIN);
 }
 
-/* A flux uses no masses beside volumes and densities. A projection of the density uses masses alone. */
-static void test_unused_beside_the_density(void** state)
-{
-  const mcor_named arrays[] = { real("h", h), real("V2", volume), real("Density", density),
-    of("Velocity", MCOR_ELEMENT_FLOAT32, 3, v32), real("Mass", mass) };
-  /* count: of the arrays, from the first one on. */
-  const struct
-  {
-    unsigned wants;
-    int count;
-    mcor_role given;
-    const char* unused;
-  } cases[] = { { MCOR_WANT_FLOW, 4, MCOR_ROLE_MASS, "SIZE_BESIDE_VOLUME|mass is" },
-    { MCOR_WANT_FLOW, 4, MCOR_ROLE_DENSITY, NULL },
-    { MCOR_WANT_COLUMN, 5, MCOR_ROLE_DENSITY, "SIZE_BESIDE_MASS|volume is" },
-    { MCOR_WANT_COLUMN, 4, MCOR_ROLE_DENSITY, NULL } };
-  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
-  {
-    mcor_request request = request_of(MCOR_WANT_SIZES | cases[c].wants);
-    request.names[MCOR_ROLE_VOLUME] = "V2";
-    request.values[cases[c].given] = 8;
-    CORE_OWNED(mcor_free_found) mcor_found found = { 0 };
-    find(&request, arrays, cases[c].count, &found);
-    CORE_CHECK(cases[c].unused ? core_tells(&found.unused, cases[c].unused) : !found.unused.text, c,
-      found.unused.text);
-  }
-}
-
 /* The sum "Density" uses masses even if volumes are given. */
 static void test_unused_beside_the_sum(void** state)
 {
@@ -436,5 +414,4 @@ static void test_walls(void** state)
 }
 
 CORE_MAIN(NULL, NULL, test_volumes, test_elements, test_one_view, test_fluid,
-  test_scalar_and_attributes, test_errors, test_unused_beside_the_density,
-  test_unused_beside_the_sum, test_walls)
+  test_scalar_and_attributes, test_errors, test_unused_beside_the_sum, test_walls)

@@ -216,27 +216,27 @@ def list_all(data):
 def join_array(sets, like, joined):
     """Joins an array's values, one block after the other, as doubles if their types differ, and adds the array to `joined`. Walls that lack
     the array get the first values of `like`. Adds nothing if a fluid block lacks the array, if a block of walls lacks an array that tells
-    kinds of particles apart, or if a block's array of this name has another size, or only one of the two holds numbers."""
-    name = name_of(like)
-    arrays = [block.GetPointData().GetAbstractArray(name) for block, _ in sets]
-    fits = [array is not None and (array.IsNumeric(), array.GetNumberOfComponents(), array.GetNumberOfTuples()) == (
-        like.IsNumeric(), like.GetNumberOfComponents(), block.GetNumberOfPoints()) for array, (block, _) in zip(arrays, sets)]
-    differ = any(fit and array.GetDataType() != like.GetDataType() for array, fit in zip(arrays, fits))
+    kinds of particles apart, or if a block's array of this name has another size, or another type and one of the two holds no numbers."""
+    name, parts, at = name_of(like), [], 0
+    is_type = name_priority(name, "particle_type") >= 0
+    for block, wall in sets:
+        array, count = block.GetPointData().GetAbstractArray(name), block.GetNumberOfPoints()
+        is_left_out = array is None and wall and not is_type
+        if not is_left_out and (array is None or (array.GetNumberOfComponents(), array.GetNumberOfTuples()) != (
+                like.GetNumberOfComponents(), count) or array.GetDataType() != like.GetDataType() and not (array.IsNumeric() and like.IsNumeric())):
+            return
+        parts.append((array, count))
+    differ = any(array is not None and array.GetDataType() != like.GetDataType() for array, _ in parts)
     made = vtkDoubleArray() if differ else like.NewInstance()
     made.SetName(name)
     made.SetNumberOfComponents(like.GetNumberOfComponents())
     made.CopyComponentNames(like)
     made.SetNumberOfTuples(joined.GetNumberOfPoints())
-    at, is_type = 0, name_priority(name, "particle_type") >= 0
-    for (block, wall), array, fit in zip(sets, arrays, fits):
-        count = block.GetNumberOfPoints()
-        if array is None and wall and not is_type:
-            for i in range(count):
-                made.InsertTuple(at + i, 0, like)
-        elif not fit:
-            return
-        else:
+    for array, count in parts:
+        if array is not None:
             made.InsertTuples(at, count, 0, array)
+        for i in range(count if array is None else 0):
+            made.InsertTuple(at + i, 0, like)
         at += count
     joined.GetPointData().AddArray(made)
 
@@ -256,8 +256,7 @@ def join_blocks(tree):
     joined.SetPoints(points)
     for block, _ in sets:
         for array in abstract_arrays_of(block.GetPointData()):
-            is_whole = array.GetNumberOfTuples() == block.GetNumberOfPoints()
-            if name_of(array) and is_whole and not joined.GetPointData().HasArray(name_of(array)):
+            if name_of(array) and not joined.GetPointData().HasArray(name_of(array)):
                 join_array(sets, array, joined)
     if some:
         marks = np.array([wall for _, wall in sets], bool)

@@ -28,54 +28,46 @@ namespace
 using Blocks = std::vector<vtkPointSet*>;
 
 /**
- * Returns the block's array that has the name of `like`. Returns null if there is none, if it has
- * another number of components or tuples, or if only one of the two arrays holds numbers.
- */
-vtkAbstractArray* FindArray(vtkPointSet* block, vtkAbstractArray* like)
-{
-  vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(like->GetName());
-  const bool fits = array && array->IsNumeric() == like->IsNumeric() &&
-    array->GetNumberOfComponents() == like->GetNumberOfComponents() &&
-    array->GetNumberOfTuples() == block->GetNumberOfPoints();
-  return fits ? array : nullptr;
-}
-
-/**
  * Joins each block's array that has the name of `first`, one block after the other, as doubles if
  * their types differ. The points of a wall that lacks the array get the first tuple of `first`; but
  * if `first` is an array of particle types, walls must have it, too. Returns null if a block lacks
- * the array and must have it, or if a block's array of this name does not fit.
+ * the array and must have it, or if a block's array of this name has another number of components or
+ * tuples, or another type and one of the two does not hold numbers.
  */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
 {
-  const bool differ = std::any_of(blocks.begin(), blocks.end(),
-    [first](vtkPointSet* block)
-    {
-      const auto* array = FindArray(block, first);
-      return array && array->GetDataType() != first->GetDataType();
-    });
-  const auto joined = vtkSPHMakeLike(first, total, differ ? VTK_DOUBLE : first->GetDataType());
   const bool isType = mcor_name_priority(MCOR_PARTICLE_TYPE, first->GetName()) >= 0;
+  std::vector<vtkAbstractArray*> arrays;
+  int type = first->GetDataType();
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+  {
+    arrays.push_back(blocks[b]->GetPointData()->GetAbstractArray(first->GetName()));
+    vtkAbstractArray* array = arrays.back();
+    const bool isLike = array &&
+      (array->GetDataType() == first->GetDataType() || (array->IsNumeric() && first->IsNumeric()));
+    const bool fits = array
+      ? isLike && array->GetNumberOfComponents() == first->GetNumberOfComponents() &&
+        array->GetNumberOfTuples() == blocks[b]->GetNumberOfPoints()
+      : !walls.empty() && walls[b] && !isType;
+    if (!fits)
+    {
+      return nullptr;
+    }
+    type = array && array->GetDataType() != type ? VTK_DOUBLE : type;
+  }
+  vtkSmartPointer<vtkAbstractArray> joined = vtkSPHMakeLike(first, total, type);
   vtkIdType at = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     const vtkIdType count = blocks[b]->GetNumberOfPoints();
-    vtkPointData* data = blocks[b]->GetPointData();
-    if (vtkAbstractArray* array = FindArray(blocks[b], first))
+    if (arrays[b])
     {
-      joined->InsertTuples(at, count, 0, array);
+      joined->InsertTuples(at, count, 0, arrays[b]);
     }
-    else if (walls.empty() || !walls[b] || isType || data->HasArray(first->GetName()))
+    for (vtkIdType i = at; !arrays[b] && i < at + count; ++i)
     {
-      return nullptr;
-    }
-    else
-    {
-      for (vtkIdType i = at; i < at + count; ++i)
-      {
-        joined->InsertTuple(i, 0, first);
-      }
+      joined->InsertTuple(i, 0, first);
     }
     at += count;
   }
@@ -247,8 +239,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
     {
       vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(i);
-      const bool isNew = array->GetName() && FindArray(block, array) &&
-        !joined->GetPointData()->HasArray(array->GetName());
+      const bool isNew = array->GetName() && !joined->GetPointData()->HasArray(array->GetName());
       if (const auto all = isNew ? JoinArrays(blocks, walls, array, total) : nullptr)
       {
         joined->GetPointData()->AddArray(all);

@@ -206,7 +206,7 @@ static int modules_derive(mcor_context* context, const mcor_input* input)
   for (int form = MCOR_GRADIENT_CORRECTED; form <= MCOR_GRADIENT_STANDARD; ++form)
   {
     const mcor_options options = modules_options(MCOR_SHEPARD);
-    mcor_derivatives d;
+    CORE_DERIVATIVES d;
     const mcor_status status = mcor_derive(context, input, &options, (mcor_gradient)form, &d);
     good = status == MCOR_OK && d.gradients[0] && d.gradients[1] && good;
     const size_t n = (size_t)d.count;
@@ -218,7 +218,6 @@ static int modules_derive(mcor_context* context, const mcor_input* input)
       modules_add(&hash, d.gradients[a], n * (a == 0 ? 9 : 3) * sizeof(double));
     }
     modules_end(context, &hash, d.count, 0);
-    mcor_free_derivatives(&d);
   }
   return good;
 }
@@ -367,10 +366,9 @@ static int tank_run(mcor_context* context, const tank_case* at)
   }
   if (has & TANK_AGAIN)
   {
-    mcor_surface first;
+    CORE_SURFACE first;
     input.particles_version = input.scalar_version = 1;
     (void)mcor_extract(context, &input, &options, &first);
-    mcor_free_surface(&first);
     options.iso_values = levels + 2;
   }
   CORE_SURFACE surface;

@@ -205,12 +205,11 @@ void core_check_these_cuts(mcor_context* context, const char* name, const mcor_i
   const mcor_options* options, const core_cut* cuts, int count)
 {
   core_whole whole = { 0 };
-  mcor_surface surface = core_extract(context, input, options);
+  CORE_SURFACE surface = core_extract(context, input, options);
   CORE_CHECK(surface.triangle_count > 300, name, surface.triangle_count);
   check_keys(&surface);
   core_add_surface(&whole.triangles, input, &surface);
   whole.statistics = surface.statistics;
-  mcor_free_surface(&surface);
   for (int i = 0; i < count; ++i)
   {
     check_cut(context, name, input, options, cuts + i, &whole);

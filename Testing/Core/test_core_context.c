@@ -275,10 +275,7 @@ static void test_statistics(void** state)
 {
   CORE_SET set = core_make_block(10, 0, 3, core_ball);
   set.has_solids = 1;
-  for (int64_t i = 0; i < 100; ++i)
-  {
-    set.solid[i] = 1; /* the lowest layer */
-  }
+  memset(set.solid, 1, 100); /* the lowest layer */
   const double iso = 0;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
@@ -421,9 +418,7 @@ static void test_profile(void** state)
   assert_true(usual.triangle_count > 100);
   CORE_CONTEXT context = NULL;
   remove(path);
-  setenv("MCOR_PROFILE", path, 1);
-  CORE_OK(context, mcor_create_context(NULL, &context));
-  unsetenv("MCOR_PROFILE");
+  core_create_with(&context, "MCOR_PROFILE", path);
   for (int call = 0; call < 3; ++call)
   {
     set.volume[1] = call < 2 ? 1 : 0.9; /* a corner, where no surface is */

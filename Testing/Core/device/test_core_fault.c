@@ -62,7 +62,7 @@ static mcor_status probe(
 static mcor_status derive(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {
-  mcor_derivatives found;
+  CORE_DERIVATIVES found;
   const mcor_status status =
     mcor_derive(context, input, &s->options, MCOR_GRADIENT_CORRECTED, &found);
   const int64_t n = found.count;
@@ -70,7 +70,6 @@ static mcor_status derive(
                                : !found.gradients && !found.corrected && n == 0,
     mcor_status_name(status), n);
   *hash = status == MCOR_OK ? hash_numbers(found.gradients[0], 3 * n) : 0;
-  mcor_free_derivatives(&found);
   return status;
 }
 

@@ -353,11 +353,10 @@ static void test_corner_on_the_level(void** state)
   CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0), move_anyhow);
   const mcor_input input = fluid_input(&made);
   mcor_options options = core_options(NULL);
-  mcor_samples samples;
+  CORE_SAMPLES samples;
   const mcor_array corner = core_array(wall.points, 3);
   CORE_OK(*state, mcor_probe(*state, &input, &options, &corner, 1, &samples));
   const double level = samples.weight_sum[0];
-  mcor_free_samples(&samples);
   options.iso_values = &level;
   options.iso_count = 1;
   const mcor_flux_reading r = flux_of(*state, &input, &options, &wall);
@@ -522,10 +521,9 @@ static void test_weird(void** state)
   input.count = 0;
   r = flux_of(*state, &input, &options, &good);
   assert_true(r.outside && r.area == 0);
-  mcor_fluxes fluxes;
+  CORE_FLUXES fluxes;
   CORE_OK(*state, mcor_flux(*state, &input, &options, NULL, 0, &fluxes));
   assert_int_equal(fluxes.count, 0);
-  mcor_free_fluxes(&fluxes);
   CORE_OWNED(free_fluid) fluid slice = make_fluid(make_slice(1), move_uniform);
   input = fluid_input(&slice);
   const shape off[3] = { { MCOR_SECTION_LINES, 2, { 5, 3, 3, 5, 3, 8 }, 0 },

@@ -115,8 +115,7 @@ static void test_exact_threshold(void** state)
   {
     options.vertex_threshold = (double)whole.weight_sum[v];
     CORE_SURFACE surface = core_extract(*state, &input, &options);
-    mesh_report report = core_check_mesh(&surface);
-    mesh_free_report(&report);
+    CORE_REPORT report = core_check_mesh(&surface);
     thresholds += surface.triangle_count > 0;
   }
   CORE_CHECK(thresholds > 50, thresholds);

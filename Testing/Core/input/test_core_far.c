@@ -19,7 +19,6 @@ static particle_set add_particles(const particle_set* block, int more)
   for (int64_t i = 0; i < block->count; ++i)
   {
     particle_set_append(&set, block, i);
-    set.solid[i] = 0;
   }
   set.count += more;
   for (int64_t i = block->count; i < set.count; ++i)
@@ -85,14 +84,11 @@ static void test_absent(void** state)
   CORE_SET set = add_particles(&block, 5);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
-  memset(block.solid, 0, (size_t)block.count);
   check_same(*state, &block, &set, input_with_solids, &options);
   check_same(*state, &block, &set, input_of_masses, &options);
   check_same(*state, &block, &set, input_with_estimate, &options);
-  for (int i = 0; i < BLOCK / 4; ++i)
-  {
-    block.solid[i] = set.solid[i] = 1;
-  }
+  memset(block.solid, 1, BLOCK / 4);
+  memset(set.solid, 1, BLOCK / 4);
   check_same(*state, &block, &set, input_with_solids, &options);
   /* Ignored solids may hold anything, too. */
   memset(block.solid, 0, (size_t)block.count);
@@ -337,8 +333,7 @@ static void test_zoom(void** state)
   {
     options.level_limit = uniform ? 0 : MCOR_CUBE_LEVELS - 1;
     surface = core_extract(*state, &input, &options);
-    mesh_report report = core_check_mesh(&surface);
-    mesh_free_report(&report);
+    CORE_REPORT report = core_check_mesh(&surface);
     assert_true(surface.statistics.is_closed);
     /* The small particles' scalars are 1 and the large ones' nearly 0, so the sum is the small
      * particles' weight sum. */

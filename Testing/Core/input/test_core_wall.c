@@ -71,7 +71,7 @@ static double find_share(const particle_set* set, oracle_kernel kernel, double p
   wall_weight at[1000];
   int count = 0;
   double sum = 0, counted = 0;
-  oracle_field field = oracle_make_field(set, kernel, ORACLE_SHEPARD, 1);
+  CORE_FIELD field = oracle_make_field(set, kernel, ORACLE_SHEPARD, 1);
   for (int64_t j = 0; j < set->count; ++j)
   {
     const double* x = set->position + 3 * j;
@@ -90,7 +90,6 @@ static double find_share(const particle_set* set, oracle_kernel kernel, double p
       sum += fluid;
     }
   }
-  oracle_free_field(&field);
   assert_in_range(count, 20, 200);
   qsort(at, (size_t)count, sizeof at[0], compare_shares);
   int i = 0;

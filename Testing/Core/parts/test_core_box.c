@@ -252,7 +252,7 @@ static void impossible_globals(void** state)
   const mcor_array attribute = core_array(set.scalar, 1);
   const mcor_input input = core_input_with(&set, &attribute, 1);
   mcor_options options = core_options(&iso);
-  mcor_globals measured;
+  CORE_OWNED(mcor_free_globals) mcor_globals measured;
   CORE_SURFACE surface;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &measured));
 #define IMPOSSIBLE(change)                                                                         \
@@ -278,7 +278,6 @@ static void impossible_globals(void** state)
 #undef IMPOSSIBLE
   options.globals = &measured;
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
-  mcor_free_globals(&measured);
 }
 
 /* Makes the particles of one period, centred at the origin. Some are so light that the surface and its caps are

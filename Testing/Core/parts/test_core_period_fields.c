@@ -108,7 +108,7 @@ static void check_halves(mcor_context* context, const mcor_input* input,
     const int axis = h / 2;
     const double length = options->periodic[2 * axis + 1];
     const double low = h % 2 ? length / 2 : 0, high = h % 2 ? length : length / 2;
-    mcor_derivatives found;
+    CORE_DERIVATIVES found;
     int sides = 0;
     memcpy(part.box, options->periodic, sizeof part.box);
     part.box[2 * axis] = low;
@@ -124,7 +124,6 @@ static void check_halves(mcor_context* context, const mcor_input* input,
       }
     }
     CORE_CHECK(sides > 10, h, sides);
-    mcor_free_derivatives(&found);
   }
   mcor_free_globals(&globals);
 }

@@ -137,7 +137,7 @@ static void check_globals(mcor_context* context, const particle_set* set, const 
   mcor_array attributes[3];
   const mcor_input input = measure_input(set, what, attributes);
   const mcor_options options = measure_options(what);
-  mcor_globals expected;
+  CORE_OWNED(mcor_free_globals) mcor_globals expected;
   CORE_OK(context, mcor_measure_globals(context, &input, &options, &expected));
   assert_true(expected.measured.neighbours > 10 && expected.measured.spacing > 0);
   assert_true(expected.measured.wall_share > 0);
@@ -157,7 +157,6 @@ static void check_globals(mcor_context* context, const particle_set* set, const 
       }
     }
   }
-  mcor_free_globals(&expected);
 }
 
 static particle_set make_set(void)
@@ -342,11 +341,10 @@ static void lines_of_parts(void** state)
     options.preview = i == 1;
     options.compact = i % 2 == 0;
     const mcor_input input = core_input(&set);
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.highest_level, i < 2 ? 0 : 2);
     CORE_CHECK(
       i < 2 || surface.statistics.cells_of_level[1] > 10, surface.statistics.cells_of_level[1]);
-    mcor_free_surface(&surface);
     check_parts(*state, &set, &options, 2, two, 80, 100);
     check_parts(*state, &set, &options, 3, three, 80, 100);
   }

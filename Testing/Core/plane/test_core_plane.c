@@ -201,10 +201,9 @@ static void test_walls_in_another_plane(void** state)
     expect_error(*state, &input, &options, "SOLIDS_BESIDE_PLANE|y = -2");
     assert_int_equal(mcor_find_dimension(&input, NULL, dimension), dimension == 2 ? 2 : 3);
     input.ignore_solids = 1;
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.dimension, 2);
     assert_int_equal(mcor_find_dimension(&input, NULL, dimension), 2);
-    mcor_free_surface(&surface);
     input.ignore_solids = 0;
   }
   set.position[4] = 0.6;

@@ -104,10 +104,9 @@ static void test_estimated_length(void** state)
   mcor_input input = core_input(&set);
   input.smoothing_length = (mcor_array){ 0 };
   input.estimate_smoothing_length = 1;
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   const double h = surface.statistics.smoothing_length_min;
   CORE_CHECK(fabs(h - 1.3) < 0.1, h);
-  mcor_free_surface(&surface);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.smoothing_length[i] = h;
@@ -242,9 +241,8 @@ static void test_points_and_rows(void** state)
     mcor_options options = plane_options(&iso);
     mcor_input input = core_input(&set);
     options.field = MCOR_WEIGHT_SUM;
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.dimension, 3);
-    mcor_free_surface(&surface);
     options.dimension = 2;
     compare_set(*state, &set, &options, 2, 1);
   }

@@ -18,8 +18,14 @@
  * watched particles suffice to notice wrong smoothing lengths. mcor_end_watch sets the measure's
  * neighbours, spacing, filled and h_median. */
 
+#define MCOR_WATCH_ENTRIES 256
+
 typedef struct mcor_watch
 {
+  /* Axes are cut into intervals that are longer than all supports are wide; intervals far apart
+   * share an entry. Bit s of an entry: whether watched particle s may reach one of its intervals. */
+  uint32_t entries[3][MCOR_WATCH_ENTRIES];
+  double density; /* intervals per unit L */
   int count;
   const mcor_sample* sample;
   double support;
@@ -68,34 +74,45 @@ static void mcor_find_normal(mcor_watch* watch)
   }
 }
 
+/* Returns the entry of the interval that holds x. */
+static inline uint32_t* mcor_watch_entry(mcor_watch* watch, int axis, double x)
+{
+  const double interval = mcor_least(1e18, mcor_most(-1e18, x * watch->density));
+  return &watch->entries[axis][(uint64_t)(int64_t)interval % MCOR_WATCH_ENTRIES];
+}
+
 /* For each watched particle, counts the chunk's particles within its support, and updates the
- * squared distance to the nearest particle at another place. low, high: the bounds of the chunk's
+ * squared distance to the nearest of them at another place. low, high: the bounds of the chunk's
  * positions. */
-MCOR_VECTOR_LOOPS static void mcor_watch_positions(
+static void mcor_watch_positions(
   mcor_watch* watch, int slice, const mcor_places* chunk, const double low[3], const double high[3])
 {
-  const double(*x)[MCOR_CHUNK] = chunk->x;
+  uint32_t some = 0; /* the watched particles that may reach the chunk */
   for (int s = 0; s < watch->count; ++s)
   {
     const double *at = watch->sample[s].x, reach = watch->support * watch->sample[s].h;
-    double square[MCOR_CHUNK], *nearest = &watch->nearest[slice][s];
-    int64_t neighbours = 0;
-    bool is_near = true; /* whether the sample may reach the chunk */
+    bool is_near = true;
     for (int a = 0; a < 3; ++a)
     {
       is_near = is_near && low[a] - at[a] < reach && at[a] - high[a] < reach;
     }
-    for (int i = 0; i < (is_near ? chunk->count : 0); ++i)
+    some |= (uint32_t)is_near << s;
+  }
+  for (int i = 0; i < (some ? chunk->count : 0); ++i)
+  {
+    const double x[3] = { chunk->x[0][i], chunk->x[1][i], chunk->x[2][i] };
+    uint32_t near = some & *mcor_watch_entry(watch, 0, x[0]) & *mcor_watch_entry(watch, 1, x[1]) &
+      *mcor_watch_entry(watch, 2, x[2]);
+    for (; near; near &= near - 1)
     {
-      const double dx = x[0][i] - at[0], dy = x[1][i] - at[1], dz = x[2][i] - at[2];
-      square[i] = dx * dx + dy * dy + dz * dz;
-      neighbours += square[i] < reach * reach ? 1 : 0;
+      const int s = __builtin_ctz(near);
+      const double reach = watch->support * watch->sample[s].h;
+      double from[3], *nearest = &watch->nearest[slice][s];
+      mcor_subtract(x, watch->sample[s].x, from);
+      const double square = mcor_dot(from, from);
+      watch->neighbours[slice][s] += square < reach * reach;
+      *nearest = square > 0 && square < *nearest ? square : *nearest;
     }
-    for (int i = 0; i < (neighbours > 0 ? chunk->count : 0); ++i)
-    {
-      *nearest = square[i] > 0 && square[i] < *nearest ? square[i] : *nearest;
-    }
-    watch->neighbours[slice][s] += neighbours;
   }
 }
 
@@ -319,6 +336,18 @@ static mcor_status mcor_measure_particles(mcor_context* context, const mcor_inpu
   for (int k = 0; k < options->iso_count; ++k)
   {
     job.level = fmin(job.level, options->iso_values[k]);
+  }
+  double widest = 0;
+  for (int n = 0; n < job.watch.count; ++n)
+  {
+    widest = fmax(widest, fmin(DBL_MAX, job.watch.support * fluid->of[n].h));
+  }
+  job.watch.density = 1 / (2.01 * widest);
+  for (int n = 0; n < 3 * job.watch.count; ++n)
+  {
+    const double at = fluid->of[n / 3].x[n % 3];
+    *mcor_watch_entry(&job.watch, n % 3, at - widest) |= UINT32_C(1) << n / 3;
+    *mcor_watch_entry(&job.watch, n % 3, at + widest) |= UINT32_C(1) << n / 3;
   }
   for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
   {

@@ -378,7 +378,8 @@ class Options(CommandLineTest):
         for name in ("Radius", "WeightSum", "vtkValidPointMask", "Divergence"):
             self.assertIn(f'Name="{name}"', output.read_text())
         for quiet, told in ([], "points      262144, 0 of them valid"), (["--quiet"], ""):
-            result = self.run_good(self.input, self.directory / "slice.vtk", "--slice=x=-7", *quiet, says="warning: " + says("POINTS_DRY"))
+            result = self.run_good(self.input, self.directory / "slice.vtk", "--slice=x=-7", "--volume=Density", "--mass=9", *quiet,
+                                   says=r"given mass is not used.*\n.*warning: " + says("POINTS_DRY"))
             self.assertTrue(result.stdout.startswith(told), result.stdout)
 
     def test_line(self):

@@ -99,7 +99,10 @@ class Project(CommandLineTest):
             self.assertEqual([path.name for _, path in self.listed("film.pvd")], [f"film_000{step}.vti" for step in range(4)])
         result = self.run_program("none.vtp", "none.vtp", "nothing.pvd", *options)
         self.one_sentence(result, 1, "no particle is seen")
-        self.run_good(self.input, self.image, *options, "--quiet", "--box", "5,6,5,6,5,6", says="warning: the image has no value but 0; check --box$")
+        told = self.run_program(self.input, self.image, *options, "--within", "7,8,7,8,7,8").stderr
+        self.assertRegex(told, says("NOTHING_WITHOUT_FLUID", "No particle is within", "nothing is seen") + "\n.*no particle is seen")
+        self.run_good(self.input, self.image, *options, "--quiet", "--volume", "Density", "--mass", "9", "--box", "5,6,5,6,5,6",
+                      says=says("SIZE_BESIDE_VOLUME", "mass is") + "\n.*warning: the image has no value but 0; check --box and --scalar$")
 
     def test_wrong_usage(self):
         self.output = self.image

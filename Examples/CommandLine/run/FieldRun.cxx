@@ -184,25 +184,22 @@ void AddPointRows(const Job& job, double time, vtkDataSet* points,
   }
 }
 
-/// Returns a line of text about the points, or about the image. fault: says so if no fluid is there.
-std::string Describe(vtkDataSet* data, std::string& fault)
+/// Returns a line of text about the points, or about the image, and a warning if no fluid is there.
+std::pair<std::string, std::string> Describe(vtkDataSet* data)
 {
   std::ostringstream line;
   if (auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray(MaskName)))
   {
     const auto valid = std::count(mask->Begin(), mask->End(), 1);
     line << "points      " << data->GetNumberOfPoints() << ", " << valid << " of them valid\n";
-    fault = valid > 0 ? "" : vtkSPHSay(MCOR_SAY(POINTS_DRY));
+    return { line.str(), valid > 0 ? "" : vtkSPHSay(MCOR_SAY(POINTS_DRY)) };
   }
-  else
-  {
-    vtkDataArray* values = data->GetPointData()->GetScalars();
-    const double* range = values->GetFiniteRange(); // of no values: the first is the larger one
-    line << "image       " << DescribeSize(vtkImageData::SafeDownCast(data)) << ", "
-         << Printable(values->GetName()) << " from " << range[0] << " to " << range[1] << "\n";
-    fault = range[0] < 0.0 || range[1] > 0.0 ? "" : "the image has no value but 0; check --box";
-  }
-  return line.str();
+  vtkDataArray* values = data->GetPointData()->GetScalars();
+  const double* range = values->GetFiniteRange(); // of no values: the first is the larger one
+  const bool isDry = range[0] >= 0.0 && range[1] <= 0.0;
+  line << "image       " << DescribeSize(vtkImageData::SafeDownCast(data)) << ", "
+       << Printable(values->GetName()) << " from " << range[0] << " to " << range[1] << "\n";
+  return { line.str(), isDry ? "the image has no value but 0; check --box and --scalar" : "" };
 }
 
 }
@@ -328,16 +325,18 @@ bool MakeField(Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
+      for (const std::string& warning : Messages().Warnings)
+      {
+        Say("warning: " + warning);
+      }
       vtkDataSet* result =
         points ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
       HideOutside(job, points, result);
-      std::string fault;
-      const std::string line = Describe(result, fault);
-      std::vector<std::string>& warnings = Messages().Warnings;
-      warnings.resize(std::max<std::size_t>(warnings.size(), fault.empty() ? 0 : 1), fault);
-      for (const std::string& warning : warnings)
+      const auto [line, fault] = Describe(result);
+      // A run without any fluid has no statistics, and a warning above says so.
+      if (!fault.empty() && (!points || job.Probe->GetRunStatistics()->GetNumberOfArrays() > 0))
       {
-        Say("warning: " + warning);
+        Say("warning: " + fault);
       }
       if (!job.Has("--quiet"))
       {

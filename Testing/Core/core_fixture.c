@@ -57,6 +57,7 @@ void core_create_with(mcor_context** context, const char* variable, const char* 
   char* last = kept ? core_copy(kept, strlen(kept) + 1) : NULL;
   setenv(variable, value, 1);
   const mcor_status status = mcor_create_context(NULL, context);
+  (*context)->pool.threads = mcor_limit_threads(mcor_processors(1)); /* else the first loop reads MCOR_THREADS */
   if (last)
   {
     setenv(variable, last, 1);

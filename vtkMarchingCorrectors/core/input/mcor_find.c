@@ -424,16 +424,17 @@ static void mcor_find_sizes(mcor_finder* f)
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
   /* Masses and densities that do not give volumes may be used for something else; then they are not
    * reported as unused. Besides volumes, a flux uses densities, or masses if there are no densities.
-   * A projection without a scalar array sums masses; without masses it integrates densities. The
-   * scalar MCOR_SUMMED uses masses. */
+   * A projection without a scalar sums masses, and needs volumes only for a mean with weights;
+   * without masses it integrates densities. The scalar MCOR_SUMMED uses masses. */
   const bool is_flow = (r->wants & MCOR_WANT_FLOW) != 0;
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
+  const bool is_mass = is_density && (known & MCOR_THE_MASS) != 0;
   const unsigned density = known & MCOR_THE_DENSITY ? MCOR_THE_DENSITY : MCOR_THE_MASS;
-  const unsigned also = is_sum ? MCOR_THE_MASS : is_flow || is_density ? density : 0;
+  const unsigned also = is_sum || is_mass ? MCOR_THE_MASS : is_flow || is_density ? density : 0;
   if (!(r->wants & MCOR_WANT_LIST))
   {
     f->found->unused = mcor_describe_unused(r, given,
-      is_density && (known & MCOR_THE_MASS) ? MCOR_THE_MASS : used | also,
+      is_mass && !mcor_given_name(f, MCOR_ROLE_WEIGHT) ? also : used | also,
       views[MCOR_ROLE_VOLUME].name);
   }
 }

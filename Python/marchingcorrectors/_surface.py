@@ -190,7 +190,7 @@ class Surface(Result):
         a plane, the points of the lines, with their arrays as columns. .vtp, .vtk, .stl, .obj: by
         PyVista. .usdc, .usda, .usd: by usd-core, with all arrays. All others: by meshio. Formats that hold no arrays get the triangles alone; a warning says so.
         """
-        path = Path(path)
+        path = Path(os.path.expanduser(path))
         ending = path.suffix.lower()
         if ending in (".stl", ".obj", ".off") and not len(self.triangles) and (ending != ".obj" or not self.lines):
             raise InvalidArgument(f"{path.name} was not written, because the surface has no triangles, and files {ending} "

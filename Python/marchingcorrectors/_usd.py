@@ -190,7 +190,7 @@ class Film:
         self._unsaved = 0
 
     def _failure(self, error):
-        words = str(error).partition(" : '")[2].partition("'")[0] or str(error)  # of the first of USD's errors
+        words = f"{error}\n".partition(" : '")[2].partition("'\n")[0] or str(error)  # of the first of USD's errors
         return FileError(f"{self.path} could not be written: {' '.join(words.split())[:200]}")
 
     def __exit__(self, kind: Any, *_: Any) -> None:

@@ -103,17 +103,20 @@ class Convert(Case):
 
     @unittest.skipUnless(sys.platform == "linux", "needs a file system of its own")
     def test_full_disk(self):
-        script = ('mount -t tmpfs -o size=8k none full || exit 77; printf old >full/$0; "$@" full/$0; status=$?; ls -A full; '
-                  'cat full/$0; exit $status')
+        script = ('mount -t tmpfs -o $0 none full || exit 77; file=full/$1; shift; printf old >$file; "$@" $file; status=$?; ls -A full; '
+                  'cat $file; exit $status')
         self.at("full").mkdir()
-        for name, *words in (("o.vtp", "convert"), *((f"o.{ending}", "surface", "--smoothing-length", "5") for ending in ("npz", "obj", "vtp"))):
+        make = ["surface", "--smoothing-length", "5"]
+        for name, size, why, words in (
+                ("o.vtp", "size=8k", "", ["convert"]), *((f"o.{ending}", "size=8k", "", make) for ending in ("npz", "obj", "vtp")),
+                ("o.usdc", "nr_inodes=3", "Unable to create temporary file in '.*': ", [*make, "--time-step", "1"])):
             done = subprocess.run(["unshare", "--mount"] + (["--map-root-user"] if os.geteuid() else []) + [
-                "sh", "-c", script, name, sys.executable, "-m", "marchingcorrectors", *words, "run_0000.vtp"], cwd=self.folder,
+                "sh", "-c", script, size, name, sys.executable, "-m", "marchingcorrectors", *words, "run_0000.vtp"], cwd=self.folder,
                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
             if "unshare" in done.stderr or done.returncode == 77:
                 self.skipTest("no file system can be mounted here")
             self.assertEqual(done.stdout, f"{name}\nold")
-            self.refuse(done, f"{name} could not be written: No space left on device")
+            self.refuse(done, f"{name} could not be written: {why}No space left on device")
 
     @unittest.skipIf(os.name == "nt", "Windows has neither limits nor modes")
     def test_links_and_modes(self):

@@ -6,6 +6,7 @@ import contextlib
 import copy
 import inspect
 import io
+import os
 import pickle
 import re
 import subprocess
@@ -15,6 +16,7 @@ import typing
 import unittest
 import warnings
 from pathlib import Path
+from unittest import mock
 
 import meshio
 import numpy as np
@@ -386,6 +388,12 @@ class Files(Case):
         with np.load(path) as arrays:
             self.assertEqual(arrays["points"].tobytes(), self.surface.points.tobytes())
             self.assertEqual(arrays["attributes/id"].tolist(), self.surface.attributes["id"].tolist())
+
+    def test_home(self):
+        with mock.patch.dict(os.environ, HOME=str(self.folder), USERPROFILE=str(self.folder)):
+            for name in ("a.vtp", "a.npz"):
+                self.surface.save(f"~/{name}")
+                self.assertTrue(self.at(name).exists())
 
     def test_meshes(self):
         for name in ("a.vtp", "a.vtk", "a.vtu", "a.xdmf"):

@@ -104,7 +104,7 @@ class Usage(CommandLineTest):
     def test_wrong_usage(self):
         good = [self.input, self.output]
         for arguments, sentence in [
-            ([self.input], "INPUT or OUTPUT is missing"),
+            ([], "INPUT or OUTPUT is missing"), ([self.input], "INPUT or OUTPUT is missing"),
             ([self.input, "film.usdc", *ISO], "marchingcorrectors surface INPUT... film.usdc .*convert FILM.pvd film.usdc"),
             ([self.input, "surface.png", *ISO],
              "output is a .vtp, .stl, .ply, .obj or .csv file, or .pvd for a film, not 'surface.png'"),

@@ -106,6 +106,7 @@ class Plane(CommandLineTest):
 
     def point_values(self, name):
         reader = vtkXMLPolyDataReader()
+        self.assertRegex(self.output.read_text(), 'compressor="vtkLZ4DataCompressor"(.|\n)*format="binary"')
         reader.SetFileName(str(self.output))
         reader.Update()
         surface = reader.GetOutput()

@@ -162,9 +162,10 @@ class Test(Case):
         sets = make_found(self.folder)
         cases = [[file, "", None, {"DetectFluid": detects, "FreeSurface": free}] for file, _ in sets.values()
                  for detects, free in ((1, 0), (0, 1))]
-        file = sets["mass"][0]  # What is found does not depend on what is missing or illegal.
-        cases += [[file, "Speed", 0.5, {"EstimateSmoothingLength": 1, "SmoothingLengthEstimate": 1, "NeighborRatio": ratio}] for ratio in (-1.0, 0.0)]
-        cases += [[sets["fluid of two types"][0], "none", 0.0, {"DetectFluid": 1}], [file, "Speed", 0.5, {"FluidArrayName": "none"}]]
+        # What is found does not depend on what is missing or illegal.
+        mass, types = (sets[name][0] for name in ("mass", "fluid of two types"))
+        cases += [[mass, "Speed", 0.5, {"EstimateSmoothingLength": 1, "SmoothingLengthEstimate": 1, "NeighborRatio": ratio}] for ratio in (-1.0, 0.0)]
+        cases += [[types, "none", 0.0, {"DetectFluid": 1}], [types, "Speed", 0.5, {"FluidArrayName": "none"}]]
         python = self.report(cases)
         for i, (name, (file, listed)) in enumerate(sets.items()):
             found, free = python[2 * i]["found"], python[2 * i + 1]

@@ -177,6 +177,18 @@ class Program(unittest.TestCase):
                 kind = read(self.path("ranks.vtp")).GetPointData().GetArray("Steps")
                 self.assertEqual(kind and kind.GetDataTypeAsString(), "double")
 
+    def test_arrays_of_some_pieces(self):
+        """An array that some pieces lack is named once, although each process has such pieces."""
+        pieces = write_pieces(PARTICLES, self.folder.name, 6)
+        for piece in range(0, 6, 2):
+            part = read(self.path(f"piece_{piece}.vtp"))
+            part.GetPointData().RemoveArray("Speed")
+            write(part, self.path(f"piece_{piece}.vtp"))
+        for run in self.run_alone, self.run_ranks:
+            done = self.good(run(pieces, self.path("o.vtp"), "--free-surface", "--quiet"))
+            self.assertRegex(done.stderr, "note: " + says("ARRAYS_NOT_SHARED", "Speed"))
+            self.assertEqual(done.stderr.count("note: "), 1, done.stderr)
+
     def test_warnings(self):
         """A warning of the core appears once, as with one process."""
         tilted = read(PARTICLES)

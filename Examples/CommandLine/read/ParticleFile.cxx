@@ -331,11 +331,11 @@ std::string ParticleFileEndings()
 }
 
 vtkSmartPointer<vtkPointSet> ReadParticles(
-  const std::vector<std::string>& files, bool mayBeEmpty, bool areWalls)
+  const std::vector<std::string>& files, bool mayBeEmpty, bool isSilent)
 {
   const ParticleSets sets = ReadSets(files);
   Require(!sets.Sets.empty() || mayBeEmpty, files.front() + " holds no points");
-  return JoinSets(sets, areWalls);
+  return JoinSets(sets, isSilent);
 }
 
 std::vector<double> ListTimes(const std::string& name)
@@ -423,7 +423,7 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count
   return sets;
 }
 
-vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool areWalls)
+vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool isSilent)
 {
   std::vector<vtkSmartPointer<vtkPolyData>> parts;
   for (const auto& [file, points] : sets.Sets)
@@ -451,7 +451,7 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool areWalls)
   }
   const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
   static bool isSaid = false;
-  NoteOnce(isSaid, areWalls ? "" : vtkSPHDescribeLost(blocks, joined));
+  NoteOnce(isSaid, isSilent ? "" : vtkSPHDescribeLost(blocks, joined));
   if (!parts.empty())
   {
     joined->SetFieldData(parts.front()->GetFieldData());

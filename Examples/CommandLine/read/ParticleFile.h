@@ -37,7 +37,7 @@ std::map<std::string, std::vector<std::string>>& ChosenWords();
 /// Reads files that each hold a part of the particles, and joins the parts, see ReadSets() and
 /// JoinSets(). Throws if there are no points, unless `mayBeEmpty`. Makes names of arrays fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
-  const std::vector<std::string>& files, bool mayBeEmpty = false, bool areWalls = false);
+  const std::vector<std::string>& files, bool mayBeEmpty = false, bool isSilent = false);
 
 /// Lists the times of the steps in a file; empty if the file tells no times. The steps can be read
 /// as FILE#0, FILE#1, ...; for such a name, lists only this step's time.
@@ -73,9 +73,9 @@ struct ParticleSets
 ParticleSets ReadSets(const std::vector<std::string>& files, int rank = 0, int count = 1);
 
 /// Joins the sets to one, with the arrays that all of them have; there may be no particles. Leaves out
-/// particles that a part marks as copies of another part's particles (vtkGhostType). Unless the particles are walls,
-/// prints a note on arrays that are left out.
-vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool areWalls = false);
+/// particles that a part marks as copies of another part's particles (vtkGhostType). Unless `isSilent`, prints a note
+/// on arrays that are left out.
+vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool isSilent = false);
 
 /// Reads a data set of any class, as carefully as ReadParticles().
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);

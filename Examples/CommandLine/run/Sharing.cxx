@@ -91,7 +91,7 @@ public:
       int any = own;
       this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
       sets.HaveVertices = any > 0;
-      this->OnAll([&] { particles = JoinSets(sets); });
+      this->OnAll([&] { particles = JoinSets(sets, !this->IsFirst()); });
     }
     const vtkIdType own = particles->GetNumberOfPoints();
     vtkIdType all = own;

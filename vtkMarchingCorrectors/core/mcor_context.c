@@ -130,7 +130,8 @@ static void mcor_find_constants(mcor_context* context, mcor_input* input)
   {
     mcor_array* array = arrays[k];
     const double first = mcor_array_at(array, 0, 0);
-    if (array->data && first > 0 && mcor_array_at(array, input->count - 1, 0) == first)
+    if (array->data && first > 0 && mcor_array_at(array, input->count / 2, 0) == first &&
+      mcor_array_at(array, input->count - 1, 0) == first)
     {
       const mcor_findings found =
         mcor_find_range(context, array, NULL, MCOR_SKIP_ABSENT, input->count, 0);

@@ -187,10 +187,9 @@ static mcor_status mcor_share_moves(const mcor_bunches* bunches)
   mcor_context* context = bunches->context;
   const size_t count = (size_t)(bunches->point_count - bunches->vertex_count),
                real = context->cl.real_size, first = (size_t)bunches->vertex_count * real;
-  const mcor_buffer* linear = &context->mesh.linear;
   void* moved = malloc(count * real + 1);
   mcor_status status = mcor_allocated(context, moved);
-  MCOR_THEN(status, mcor_read(context, linear, first, moved, count * real));
+  MCOR_THEN(status, mcor_read(context, &context->mesh.linear, first, moved, count * real));
   for (size_t i = 0; i < count && status == MCOR_OK; ++i)
   {
     const int axis = bunches->points[(size_t)bunches->vertex_count + i].node[3] & 3;

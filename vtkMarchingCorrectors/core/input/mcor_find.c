@@ -422,10 +422,9 @@ static void mcor_find_sizes(mcor_finder* f)
     used == 0 && !r->compute_volumes ? r->particle_volume : input->volume.constant;
   const bool is_density =
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
-  /* Masses and densities that do not give volumes may be used for something else; then they are not
-   * reported as unused. Besides volumes, a flux uses densities, or masses if there are no densities.
-   * A projection without a scalar sums masses, and needs volumes only for a mean with weights;
-   * without masses it integrates densities. The scalar MCOR_SUMMED uses masses. */
+  /* Quantities that give no volumes may have another use. A flux uses densities or, without these,
+   * masses. A projection without a scalar sums masses, and needs volumes only for a mean with
+   * weights; without masses it integrates densities. The scalar MCOR_SUMMED uses masses. */
   const bool is_flow = (r->wants & MCOR_WANT_FLOW) != 0;
   const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
   const bool is_mass = is_density && (known & MCOR_THE_MASS) != 0;

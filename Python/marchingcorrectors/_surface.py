@@ -63,7 +63,8 @@ def writing(path, mesh=None):
     """Lets the system's errors name the file that the block writes. mesh: a mesh that VTK writes. On a full disk, VTK may end the process,
     so free space is checked before the block; or VTK may write a part without an error, so some more bytes are written as a test."""
     try:
-        if mesh is not None and shutil.disk_usage(os.path.dirname(os.path.abspath(path))).free < 1024 * mesh.actual_memory_size:
+        total, _, free = shutil.disk_usage(os.path.dirname(os.path.abspath(path)))  # A mounted share may not tell: total is 0.
+        if mesh is not None and free < min(total, 1024 * mesh.actual_memory_size):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         yield
         if mesh is not None and os.path.isfile(path):

@@ -395,6 +395,11 @@ class Files(Case):
                 self.surface.save(f"~/{name}")
                 self.assertTrue(self.at(name).exists())
 
+    def test_share(self):
+        """A file system that does not tell its size is not taken for a full one."""
+        with mock.patch("shutil.disk_usage", return_value=(0, 0, 0)):
+            self.assertEqual(self.save("a.vtp")[1], [])
+
     def test_meshes(self):
         for name in ("a.vtp", "a.vtk", "a.vtu", "a.xdmf"):
             path, sentences = self.save(name)

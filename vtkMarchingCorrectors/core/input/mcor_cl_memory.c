@@ -158,12 +158,8 @@ static const void* mcor_convert(const mcor_array* from, mcor_type type, int64_t 
 mcor_status mcor_store(
   mcor_context* context, const mcor_array* from, int64_t count, const mcor_array* to)
 {
-  if (!context)
-  {
-    return MCOR_INVALID_ARGUMENT;
-  }
-  MCOR_FAIL_IF(!from || !to || count < 0 || (count > 0 && (!from->data || !to->memory)), context,
-    MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER), "from->data and to->memory");
+  MCOR_FAIL_IF(!context || !from || !to || count < 0 || (count > 0 && (!from->data || !to->memory)),
+    context, MCOR_INVALID_ARGUMENT, MCOR_SAY(NULL_POINTER), "from->data and to->memory");
   const int components = mcor_components(from);
   MCOR_FAIL_IF(components != mcor_components(to), context, MCOR_INVALID_ARGUMENT,
     MCOR_SAY(MEMORY_COMPONENTS), components, to->components);
@@ -179,10 +175,13 @@ mcor_status mcor_store(
   mcor_status status = mcor_allocated(context, values != NULL);
   if (status == MCOR_OK)
   {
-    const cl_int error = clEnqueueWriteBufferRect(memory.queue, memory.buffer, CL_TRUE,
-      memory.first, none, memory.rows, memory.stride, 0, memory.rows[0], 0, values, 0, NULL, NULL);
-    status =
-      error == CL_SUCCESS ? MCOR_OK : mcor_cl_fail(context, error, "clEnqueueWriteBufferRect");
+    /* A rectangle may be slower than a plain write, or may have a limit of its own. */
+    const cl_int error = memory.rows[1] == 1
+      ? clEnqueueWriteBuffer(memory.queue, memory.buffer, CL_TRUE, memory.first[0], memory.rows[0],
+          values, 0, NULL, NULL)
+      : clEnqueueWriteBufferRect(memory.queue, memory.buffer, CL_TRUE, memory.first, none,
+          memory.rows, memory.stride, 0, memory.rows[0], 0, values, 0, NULL, NULL);
+    status = error == CL_SUCCESS ? MCOR_OK : mcor_cl_fail(context, error, "clEnqueueWriteBuffer");
   }
   free(made);
   clReleaseCommandQueue(memory.queue);

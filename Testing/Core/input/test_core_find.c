@@ -59,8 +59,8 @@ static void test_volumes(void** state)
     real("Density", density), real("V2", speed), real("M2", speed), real("D2", speed) };
   /* file: letters of the arrays that the file has (v volume, m mass, d density). given: v, m, d: an array by name; M,
    * D: a value; c: computed volumes; p: one volume for all particles; F: a flux wants them, P: a projection of the
-   * density, W: with weights. used: what makes the volumes. unused: what core_tells finds in the message on unused
-   * values; NULL: there is no message. */
+   * density, W: with the weights M2, S: of densities summed from masses, A: of an array. used: what makes the
+   * volumes. unused: what core_tells finds in the message on unused values; NULL: there is no message. */
   const struct
   {
     const char *file, *given, *used, *unused;
@@ -80,7 +80,9 @@ static void test_volumes(void** state)
     { "d", "vMF", "V2", "SIZE_BESIDE_VOLUME|mass is" }, { "", "vMF", "V2", NULL },
     { "m", "vDF", "V2", NULL }, { "", "vDP", "V28", NULL },
     { "m", "vDP", "V2Mass/", "SIZE_BESIDE_MASS|volume is" }, { "d", "vMP", "V27/", "SIZE_BESIDE_MASS" },
-    { "m", "vPW", "V2Mass/", NULL }, { "m", "vDPW", "V2Mass/", "SIZE_BESIDE_VOLUME|density is" } };
+    { "m", "vPW", "V2Mass/", NULL }, { "m", "vDPW", "V2Mass/", "SIZE_BESIDE_VOLUME|density is" },
+    { "", "vMPS", "V27/", NULL }, { "", "vmPAW", "V2M2/", NULL },
+    { "", "vMPAW", "V27/", "SIZE_BESIDE_VOLUME|mass is" } };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
     mcor_named arrays[8] = { all[0], all[4], all[5], all[6],
@@ -99,6 +101,7 @@ static void test_volumes(void** state)
     request.names[MCOR_ROLE_VOLUME] = strchr(given, 'v') ? "V2" : NULL;
     request.names[MCOR_ROLE_MASS] = strchr(given, 'm') ? "M2" : "(automatic)";
     request.names[MCOR_ROLE_DENSITY] = strchr(given, 'd') ? "D2" : "";
+    request.names[MCOR_ROLE_SCALAR] = strchr(given, 'S') ? "Density" : strchr(given, 'A') ? "D2" : NULL;
     request.names[MCOR_ROLE_WEIGHT] = strchr(given, 'W') ? "M2" : NULL;
     request.values[MCOR_ROLE_MASS] = strchr(given, 'M') ? 7 : 0;
     request.values[MCOR_ROLE_DENSITY] = strchr(given, 'D') ? 8 : 0;

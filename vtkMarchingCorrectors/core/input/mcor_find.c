@@ -424,17 +424,18 @@ static void mcor_find_sizes(mcor_finder* f)
     (r->wants & MCOR_WANT_COLUMN) != 0 && !mcor_given_name(f, MCOR_ROLE_SCALAR);
   /* Quantities that give no volumes may have another use. A flux uses densities or, without these,
    * masses. A projection without a scalar sums masses, and needs volumes only for a mean with
-   * weights; without masses it integrates densities. The scalar MCOR_SUMMED uses masses. */
+   * weights; without masses it integrates densities. Masses may be these weights, too. */
+  const char *weight = mcor_given_name(f, MCOR_ROLE_WEIGHT),
+             *mass = mcor_given_name(f, MCOR_ROLE_MASS);
   const bool is_flow = (r->wants & MCOR_WANT_FLOW) != 0;
-  const bool is_sum = (r->wants & MCOR_WANT_SCALAR) != 0 && mcor_is_summed(f);
+  const bool is_sum = f->found->needs_densities || (weight && mass && strcmp(weight, mass) == 0);
   const bool is_mass = is_density && (known & MCOR_THE_MASS) != 0;
   const unsigned density = known & MCOR_THE_DENSITY ? MCOR_THE_DENSITY : MCOR_THE_MASS;
   const unsigned also = is_sum || is_mass ? MCOR_THE_MASS : is_flow || is_density ? density : 0;
   if (!(r->wants & MCOR_WANT_LIST))
   {
-    f->found->unused = mcor_describe_unused(r, given,
-      is_mass && !mcor_given_name(f, MCOR_ROLE_WEIGHT) ? also : used | also,
-      views[MCOR_ROLE_VOLUME].name);
+    f->found->unused = mcor_describe_unused(
+      r, given, is_mass && !weight ? also : used | also, views[MCOR_ROLE_VOLUME].name);
   }
 }
 

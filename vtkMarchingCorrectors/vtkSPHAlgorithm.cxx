@@ -90,9 +90,8 @@ vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
 const char* vtkSPHAlgorithm::GetStatistics()
 {
   std::ostringstream text;
-  for (int i = 0; i < this->RunStatistics->GetNumberOfArrays(); ++i)
+  for (const auto& array : vtkSPHListArrays(this->RunStatistics))
   {
-    vtkAbstractArray* array = this->RunStatistics->GetAbstractArray(i);
     text << array->GetName() << ":";
     for (vtkIdType v = 0; v < array->GetNumberOfValues(); ++v)
     {

@@ -51,8 +51,7 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
 #endif
   output->CopyStructure(blocks);
   const std::vector<std::string> names = vtkSPHNameBlocks(blocks);
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(blocks->NewTreeIterator());
+  const auto iterator = vtk::TakeSmartPointer(blocks->NewTreeIterator());
   // The blocks, in order. Later blocks are shallow copies. The first block is not copied, so that
   // the data that the filter has kept for this block can be used again.
   std::vector<vtkSmartPointer<vtkDataObject>> taken;

@@ -44,17 +44,6 @@ constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 const char* const IdName = "ComponentId";
 
 /**
- * Returns the array of this name or, if the name is empty, the array with the most usual name of the
- * quantity; nullptr if there is none.
- */
-vtkDataArray* FindArray(
-  vtkPointSet* particles, const std::string& name, mcor_quantity quantity, int components)
-{
-  return name.empty() ? vtkSPHDetect(particles, quantity, components)
-                      : particles->GetPointData()->GetArray(name.c_str());
-}
-
-/**
  * Adds an array with the id of the piece of each point or triangle that stays. The ids become
  * active scalars if there are several pieces: most users want to tell pieces apart by colour.
  * Returns the ids.
@@ -162,8 +151,8 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
 {
   std::vector<Content> contents(pieces.Pieces.size());
   vtkDataArray* masses =
-    this->Mass > 0.0 ? nullptr : FindArray(particles, this->MassArrayName, MCOR_MASS, 1);
-  vtkDataArray* velocities = FindArray(particles, this->VelocityArrayName, MCOR_VELOCITY, 3);
+    this->Mass > 0.0 ? nullptr : vtkSPHDetect(particles, MCOR_MASS, 1, this->MassArrayName);
+  vtkDataArray* velocities = vtkSPHDetect(particles, MCOR_VELOCITY, 3, this->VelocityArrayName);
   vtkSPHParticlesChoice choice;
   choice.FluidValue = this->FluidValue;
   choice.FluidArrayName = vtkSPHRealName(this->FluidArrayName);

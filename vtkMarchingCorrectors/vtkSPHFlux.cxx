@@ -87,13 +87,8 @@ void vtkSPHFlux::AddLine(const char* name, const double a[3], const double b[3])
 
 void vtkSPHFlux::AddSurface(const char* name, vtkDataSet* surface)
 {
-  Shapes all;
-  for (const Shapes& shapes :
-    ListShapes(surface, [surface](vtkIdType i) { return NameOf(surface, i, ""); }))
-  {
-    all.Triangles.insert(all.Triangles.end(), shapes.Triangles.begin(), shapes.Triangles.end());
-    all.Lines.insert(all.Lines.end(), shapes.Lines.begin(), shapes.Lines.end());
-  }
+  const std::vector<Shapes> list = ListShapes(surface, [](vtkIdType) { return ""; });
+  const Shapes all = list.empty() ? Shapes() : list.front(); // cells with one name are one section
   all.Triangles.empty() ? this->AddPlace(name, MCOR_SECTION_LINES, all.Lines)
                         : this->AddPlace(name, MCOR_SECTION_TRIANGLES, all.Triangles);
 }

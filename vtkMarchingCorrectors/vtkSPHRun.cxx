@@ -83,7 +83,7 @@ std::unique_ptr<vtkSPHAlgorithm::vtkRun> vtkSPHAlgorithm::vtkRun::Make(vtkSPHAlg
 
 void vtkSPHAlgorithm::vtkRun::Fail(const std::string& message)
 {
-  if (!this->IsQuiet)
+  if (!this->IsQuiet && !message.empty())
   {
     this->Filter->Fail(message);
   }
@@ -91,10 +91,7 @@ void vtkSPHAlgorithm::vtkRun::Fail(const std::string& message)
 
 bool vtkSPHAlgorithm::vtkRun::Agree(const std::string& problem)
 {
-  if (!problem.empty())
-  {
-    this->Fail(problem);
-  }
+  this->Fail(problem);
   return problem.empty();
 }
 
@@ -148,23 +145,17 @@ bool vtkSPHAlgorithm::vtkRun::Accept(vtkSPHParticles& particles, const std::stri
 
 bool vtkSPHAlgorithm::vtkRun::SetPeriod()
 {
-  if (!this->Filter->DetectPeriod)
+  if (this->Filter->DetectPeriod)
   {
-    mcor_move_period(&this->Options);
-    return true;
+    std::string problem;
+    const std::vector<double> period = this->FindPeriod(problem);
+    if (period.empty() || !problem.empty())
+    {
+      this->Fail(problem.empty() ? vtkSPHSay(MCOR_SAY(NO_PERIOD)) : problem);
+      return false;
+    }
+    std::copy(period.begin(), period.end(), this->Options.periodic);
   }
-  std::string problem;
-  const std::vector<double> period = this->FindPeriod(problem);
-  if (period.empty() && problem.empty())
-  {
-    problem = vtkSPHSay(MCOR_SAY(NO_PERIOD));
-  }
-  if (!problem.empty())
-  {
-    this->Fail(problem);
-    return false;
-  }
-  std::copy(period.begin(), period.end(), this->Options.periodic);
   mcor_move_period(&this->Options);
   return true;
 }

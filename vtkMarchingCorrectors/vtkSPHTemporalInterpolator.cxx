@@ -279,8 +279,7 @@ void vtkSPHTemporalInterpolator::FillBlocks(
   }
   output->CopyStructure(first);
   const std::vector<std::string> names = vtkSPHNameBlocks(first);
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(first->NewTreeIterator());
+  const auto iterator = vtk::TakeSmartPointer(first->NewTreeIterator());
   iterator->InitTraversal();
   for (size_t i = 0; i < names.size(); ++i, iterator->GoToNextItem())
   {

@@ -311,8 +311,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                        "FreeSurface": 0, "Fluid": "", "Array": ""}
         for each in sets_of(self._join(self._keep(take_vertices, data))):
             self._look_at(each, self._ahead)
-        warning = take_sentence(lib.mcor_describe_estimate(self._ahead["Cells"]))
-        self._ahead["Warning"] = in_panel(warning) if warning else ""
+        self._ahead["Warning"] = in_panel(take_sentence(lib.mcor_describe_estimate(self._ahead["Cells"])))
         self._look_time.Modified()
         return self._ahead
 

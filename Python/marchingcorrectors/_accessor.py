@@ -104,9 +104,7 @@ class SphAccessor:
         time = self._data.GetMTime()
         if self._taken[0] != time:
             taken = take_vertices(self._data)
-            said = describe_mesh(self._data, taken)
-            if said:
-                warn(said)
+            warn(describe_mesh(self._data, taken))
             self._taken = time, pyvista.wrap(taken)
         return self._taken[1]
 
@@ -253,9 +251,7 @@ class BlocksAccessor:
     def __getattr__(self, name):
         taken = take_vertices(self._blocks)
         joined = join_blocks(taken)
-        said = describe_lost(taken, joined)
-        if said:
-            warn(said)
+        warn(describe_lost(taken, joined))
         return getattr(SphAccessor(pyvista.wrap(joined)), name)
 
     def __dir__(self):

@@ -250,8 +250,8 @@ class Finder(Arguments):
         self.find(self.named, ["sizes", *wants, *["fluid"] * self.looks], self.names, self.values, self.ranges, **self.request)
         if self.error:
             raise InvalidArgument(say("LENGTH_MISSING") if self.error.code == "NO_SMOOTHING_LENGTH" else self.error)
-        for sentence in filter(None, (self.unused, self.unused_type)):
-            warn(sentence)
+        warn(self.unused)
+        warn(self.unused_type)
         why = self.text("no_fluid")
         for name in self.texts:  # The core's sentence has name=value.
             why = why.replace(f"{name}=1", name)

@@ -4,7 +4,6 @@
 marching-correctors, except for its options for pieces, pictures and several processes."""
 import argparse
 import ctypes
-import csv
 import os
 import re
 from functools import partial
@@ -18,7 +17,7 @@ from ._functions import free_surface, gauge, isosurface, probe
 from ._library import InvalidArgument, lib, say, warn
 from .io.convert import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, did_you_mean, words_of
-from ._surface import save_npz, writing
+from ._surface import save_npz, write_csv, writing
 from ._usd import is_usd
 
 
@@ -226,6 +225,8 @@ def run_surface(given, particles):
 
 def run_gauge(given, particles):
     """Measures the gauges at all steps of a file, or in one set of particles, and writes a row for each step and gauge."""
+    if not given.output.lower().endswith(".csv"):
+        raise InvalidArgument(f"The output is a .csv file, not '{os.path.basename(given.output)}'.")
     rows, is_film, names = [], len(given.input) == 1, [name for name, _ in given.gauge]
     for name in names:
         if names.count(name) > 1:
@@ -235,17 +236,8 @@ def run_gauge(given, particles):
         time = float(step if each.time is None else each.time)
         rows += [[time, name, found.state[i], found.first[i], found.last[i], found.depth[i], len(found.crossings[name]),
                   *found.place[i]] for i, name in enumerate(found.names)]
-    write_table(given.output, ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"], rows)
+    write_csv(given.output, ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"], rows)
     return f"{len(given.gauge)} gauge{'s' * (len(given.gauge) != 1)}, {step + 1} step{'s' * (step > 0)}"
-
-
-def write_table(output, head, rows):
-    """Writes a .csv file; NaN becomes an empty cell."""
-    if not output.lower().endswith(".csv"):
-        raise InvalidArgument(f"The output is a .csv file, not '{os.path.basename(output)}'.")
-    with writing(output), open(output, "w", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows(
-            [head, *([cell if cell == cell else "" for cell in row] for row in rows)])
 
 
 def run_probe(given, particles, points, make, command):
@@ -261,7 +253,7 @@ def run_probe(given, particles, points, make, command):
             flat = values.reshape(len(points), -1)
             columns.update((name if values.ndim == 1 else "xyz"[i] if not name else f"{name}:{i}", flat[:, i].tolist())
                            for i in range(flat.shape[1]))
-        write_table(given.output, list(columns), zip(*columns.values()))
+        write_csv(given.output, list(columns), zip(*columns.values()))
     else:
         import pyvista
 

@@ -116,8 +116,7 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
         found.nearest_particle = None
     warn_of_missing(found.left_out)
     for sentence in list(sentences.values()) or [_describe_empty(arguments, found)]:
-        if sentence:
-            warn(sentence)
+        warn(sentence)
     return found
 
 

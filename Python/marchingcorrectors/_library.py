@@ -143,20 +143,14 @@ def take_sentence(message):
     return sentence
 
 
-_state_lock = threading.Lock()
-_ready_in = None  # OpenCL was started in this process.
+_started = {}  # {"in": the number of the process that has started OpenCL}
 
 
 def start():
     """Must be called before each use of OpenCL. Raises DeviceError if OpenCL was started before this process was forked."""
-    global _ready_in
-    with _state_lock:
-        if _ready_in is None:
-            _ready_in = os.getpid()
-        elif _ready_in != os.getpid():
-            raise DeviceError("OpenCL was started before this process was forked, and drivers do not survive "
-                              'that: use the "spawn" method of multiprocessing, or do not call this package '
-                              "before the fork.")
+    if _started.setdefault("in", os.getpid()) != os.getpid():
+        raise DeviceError("OpenCL was started before this process was forked, and drivers do not survive that: use the \"spawn\" "
+                          "method of multiprocessing, or do not call this package before the fork.")
 
 
 def devices() -> List[str]:
@@ -179,7 +173,9 @@ class InputWarning(UserWarning):
 
 
 def warn(sentence):
-    """Warns at the caller's line, the first one outside of this package."""
+    """Warns, unless the sentence is empty, at the caller's line: the first one outside of this package."""
+    if not sentence:
+        return
     level, frame = 1, sys._getframe(0)
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
@@ -188,13 +184,9 @@ def warn(sentence):
 
 def describe_warnings(arguments, surface):
     """Returns {number: sentence} of what the core finds strange in a surface's input."""
-    found = {}
-    for number in range(c.ENUMS["mcor_warning"]["MCOR_WARNING_COUNT"]):
-        sentence = take_sentence(lib.mcor_describe_warning(
-            number, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)))
-        if sentence:
-            found[number] = sentence
-    return found
+    given = [ctypes.byref(each) for each in (arguments.input, arguments.options, surface)]
+    found = [take_sentence(lib.mcor_describe_warning(i, *given)) for i in range(c.ENUMS["mcor_warning"]["MCOR_WARNING_COUNT"])]
+    return {i: sentence for i, sentence in enumerate(found) if sentence}
 
 
 def warn_of_particles(arguments, statistics):

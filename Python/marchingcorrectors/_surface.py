@@ -84,6 +84,12 @@ def save_npz(path, **arrays):
         Path(path).write_bytes(held.getbuffer())
 
 
+def write_csv(path, head, rows):
+    """Writes a table; NaN becomes an empty cell."""
+    with writing(path), open(path, "w", newline="", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerows([head, *([cell if cell == cell else "" for cell in row] for row in rows)])
+
+
 CELLS = ("points", "triangles", "triangle_keys", "line_points", "line_offsets", "band_value")
 
 
@@ -254,10 +260,9 @@ def _save_csv(path, surface):
         while name in columns:
             name += "_"
         values = (values.astype(np.uint8) if values.dtype == bool else values)[taken]
-        columns[name] = [("" if each != each else each + 0.0) if values.dtype.kind == "f" else each for each in values.tolist()]
-    with writing(path), open(path, "w", newline="", encoding="utf-8") as file:
-        head = ["'" + name if name.startswith(("=", "+", "-", "@")) else name for name in columns]  # Spreadsheets must not take a text for a formula.
-        csv.writer(file, lineterminator="\n").writerows([head, *zip(*columns.values())])
+        columns[name] = (values + 0.0 if values.dtype.kind == "f" else values).tolist()  # -0.0 becomes 0.0.
+    head = ["'" + name if name.startswith(("=", "+", "-", "@")) else name for name in columns]  # Spreadsheets must not take a name for a formula.
+    write_csv(path, head, zip(*columns.values()))
 
 
 def _save_ply(path, surface):

@@ -24,6 +24,16 @@
 #include <numeric>
 
 VTK_ABI_NAMESPACE_BEGIN
+std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHListArrays(vtkFieldData* data)
+{
+  std::vector<vtkSmartPointer<vtkAbstractArray>> arrays;
+  for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
+  {
+    arrays.emplace_back(data->GetAbstractArray(i));
+  }
+  return arrays;
+}
+
 std::string vtkSPHNameOf(vtkAbstractArray* array)
 {
   return array && array->GetName() ? array->GetName() : "";
@@ -36,11 +46,10 @@ std::string vtkSPHRealName(const std::string& name)
 
 std::string vtkSPHListNames(vtkPointSet* points)
 {
-  vtkPointData* pointData = points->GetPointData();
   std::string list;
-  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  for (const auto& array : vtkSPHListArrays(points->GetPointData()))
   {
-    list += (i ? ", " : "") + vtkSPHNameOf(pointData->GetAbstractArray(i));
+    list += (list.empty() ? "" : ", ") + vtkSPHNameOf(array);
   }
   return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
 }
@@ -82,9 +91,9 @@ void vtkSPHTakeTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttr
 
 void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 {
-  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  for (const auto& array : vtkSPHListArrays(from))
   {
-    to->AddArray(from->GetAbstractArray(i));
+    to->AddArray(array);
   }
   if (from->GetScalars())
   {
@@ -245,9 +254,9 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&counts
 
 vtkSPHNamed::vtkSPHNamed(vtkFieldData* arrays)
 {
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  for (const auto& array : vtkSPHListArrays(arrays))
   {
-    this->Add(arrays->GetAbstractArray(i));
+    this->Add(array);
   }
 }
 
@@ -281,8 +290,13 @@ void vtkSPHNamed::Add(vtkAbstractArray* array)
   this->Held.emplace_back(numbers ? numbers.Get() : array);
 }
 
-vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components)
+vtkDataArray* vtkSPHDetect(
+  vtkPointSet* points, mcor_quantity quantity, int components, const std::string& name)
 {
+  if (!name.empty())
+  {
+    return points->GetPointData()->GetArray(name.c_str());
+  }
   const vtkSPHNamed named(points->GetPointData());
   const int found = mcor_find_named(named.List.data(), static_cast<int>(named.List.size()),
     quantity, components, points->GetNumberOfPoints());

@@ -31,6 +31,10 @@ class vtkIdList;
 class vtkPoints;
 class vtkPointSet;
 
+/** Lists all arrays of the data; no array if the data is null. */
+VTKMARCHINGCORRECTORS_EXPORT std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHListArrays(
+  vtkFieldData* data);
+
 /** Returns the array's name; empty if the array has none, or is null. */
 std::string vtkSPHNameOf(vtkAbstractArray* array);
 
@@ -188,8 +192,12 @@ enum vtkSPHHow
 /** Adds the costs of one call of the core to the costs of earlier calls in `run`. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
-/** Returns the point array that has the most usual name for this quantity and `components` components; nullptr: there is none. */
-vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
+/**
+ * Returns the point array of this name; without a name, the point array that has the most usual name
+ * for this quantity and `components` components. nullptr: there is none.
+ */
+vtkDataArray* vtkSPHDetect(
+  vtkPointSet* points, mcor_quantity quantity, int components, const std::string& name = "");
 
 /** Lists VTK arrays for the core, and keeps the arrays alive. Copies arrays whose values the core cannot read in place. */
 class vtkSPHNamed

@@ -101,8 +101,7 @@ std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
   std::vector<Leaf> leaves;
   std::string whole; // name of the block whose partitions are the blocks up to index `last`
   unsigned int last = 0;
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(tree->NewTreeIterator());
+  const auto iterator = vtk::TakeSmartPointer(tree->NewTreeIterator());
   iterator->VisitOnlyLeavesOff();
   iterator->SkipEmptyNodesOff();
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
@@ -154,8 +153,7 @@ std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArr
 std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
 {
   std::vector<vtkDataObject*> all{ tree };
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(tree->NewTreeIterator());
+  const auto iterator = vtk::TakeSmartPointer(tree->NewTreeIterator());
   iterator->VisitOnlyLeavesOff();
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
@@ -236,9 +234,8 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   const vtkIdType total = points->GetNumberOfPoints();
   for (vtkPointSet* block : blocks)
   {
-    for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
+    for (const auto& array : vtkSPHListArrays(block->GetPointData()))
     {
-      vtkAbstractArray* array = block->GetPointData()->GetAbstractArray(i);
       const bool isNew = array->GetName() && !joined->GetPointData()->HasArray(array->GetName());
       if (const auto all = isNew ? JoinArrays(blocks, walls, array, total) : nullptr)
       {
@@ -271,12 +268,11 @@ std::string vtkSPHDescribeLost(vtkDataObject* blocks, vtkPointSet* joined)
   std::set<std::string> lost;
   for (vtkPointSet* block : vtkSPHListPointSets(blocks))
   {
-    for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
+    for (const auto& array : vtkSPHListArrays(block->GetPointData()))
     {
-      const char* name = block->GetPointData()->GetAbstractArray(i)->GetName();
-      if (name && !joined->GetPointData()->HasArray(name))
+      if (array->GetName() && !joined->GetPointData()->HasArray(array->GetName()))
       {
-        lost.insert(name);
+        lost.insert(array->GetName());
       }
     }
   }
@@ -295,8 +291,7 @@ void vtkSPHSplitBlocks(
   output->CopyStructure(tree);
   vtkPointData* made = joined->GetPointData();
   vtkIdType at = 0;
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(tree->NewTreeIterator());
+  const auto iterator = vtk::TakeSmartPointer(tree->NewTreeIterator());
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
     auto* block = vtkPointSet::SafeDownCast(iterator->GetCurrentDataObject());
@@ -307,9 +302,8 @@ void vtkSPHSplitBlocks(
     auto copy = vtkSmartPointer<vtkPointSet>::Take(block->NewInstance());
     copy->ShallowCopy(block);
     const vtkIdType count = block->GetNumberOfPoints();
-    for (int i = 0; count > 0 && i < made->GetNumberOfArrays(); ++i)
+    for (const auto& from : vtkSPHListArrays(count > 0 ? made : nullptr))
     {
-      vtkAbstractArray* from = made->GetAbstractArray(i);
       if (from->GetName() && before->GetPointData()->GetAbstractArray(from->GetName()) != from)
       {
         const vtkSmartPointer<vtkAbstractArray> part = vtkSPHMakeLike(from, count);

@@ -73,16 +73,12 @@ bool vtkSPHColorRange::Find(vtkDataArray* array, double range[2]) const
   }
   std::vector<std::pair<double, double>> found; // values and their shares
   double total = 0.0;
+  const int components = array->GetNumberOfComponents();
+  std::vector<double> tuple(components);
   for (const auto& sample : this->Samples)
   {
-    double square = 0.0;
-    const int components = array->GetNumberOfComponents();
-    for (int c = 0; c < components && components > 1; ++c)
-    {
-      square += array->GetComponent(sample.first, c) * array->GetComponent(sample.first, c);
-    }
-    const double value =
-      components > 1 ? std::sqrt(square) : array->GetComponent(sample.first, 0);
+    array->GetTuple(sample.first, tuple.data());
+    const double value = components > 1 ? vtkMath::Norm(tuple.data(), components) : tuple[0];
     if (std::isfinite(value))
     {
       found.emplace_back(value, sample.second);

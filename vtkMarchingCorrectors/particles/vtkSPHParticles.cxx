@@ -14,7 +14,6 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
-#include <iterator>
 #include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -232,12 +231,10 @@ mcor_options vtkSPHParticles::OwnOptions() const
   options.sph_kernel = static_cast<mcor_sph_kernel>(f.Kernel);
   options.dimension = f.Dimension;
   std::copy(f.PeriodicBounds, f.PeriodicBounds + 6, options.periodic);
-  const vtkSPHPeriod found =
-    f.DetectPeriod ? vtkSPHFindPeriod(this->Points->GetFieldData()) : vtkSPHPeriod();
-  if (!found.Period.empty())
+  if (f.DetectPeriod)
   {
-    const std::vector<double> bounds =
-      vtkSPHBoundsOfPeriod(found.Period, this->Points->GetBounds());
+    const std::vector<double> bounds = vtkSPHBoundsOfPeriod(
+      vtkSPHFindPeriod(this->Points->GetFieldData()).Period, this->Points->GetBounds());
     std::copy(bounds.begin(), bounds.end(), options.periodic);
   }
   return options;

@@ -16,6 +16,7 @@
 #include "vtkSPHBlocks.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -30,29 +31,24 @@ bool IsVertex(int type)
 struct Cells
 {
   vtkCellArray* List = nullptr;
-  vtkUnstructuredGrid* Grid = nullptr; ///< null: all are vertices
+  vtkUnstructuredGrid* Grid; ///< null: all are vertices
   bool HasVertices = false, HasOthers = false;
 
   explicit Cells(vtkPointSet* data)
+    : Grid(vtkUnstructuredGrid::SafeDownCast(data))
   {
-    auto* grid = vtkUnstructuredGrid::SafeDownCast(data);
-    auto* poly = vtkPolyData::SafeDownCast(data);
-    if (poly)
+    if (auto* poly = vtkPolyData::SafeDownCast(data))
     {
       this->List = poly->GetVerts();
       this->HasVertices = poly->GetNumberOfVerts() > 0;
       this->HasOthers = poly->GetNumberOfCells() > poly->GetNumberOfVerts();
       return;
     }
-    this->HasOthers = !grid && data->GetNumberOfCells() > 0;
-    if (grid && grid->GetNumberOfCells() > 0)
+    this->HasOthers = !this->Grid && data->GetNumberOfCells() > 0;
+    this->List = this->Grid ? this->Grid->GetCells() : nullptr;
+    for (vtkIdType i = 0; this->Grid && i < this->Grid->GetNumberOfCells(); ++i)
     {
-      this->List = grid->GetCells();
-      this->Grid = grid;
-      for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i)
-      {
-        (IsVertex(grid->GetCellType(i)) ? this->HasVertices : this->HasOthers) = true;
-      }
+      (IsVertex(this->Grid->GetCellType(i)) ? this->HasVertices : this->HasOthers) = true;
     }
   }
 };
@@ -137,14 +133,9 @@ vtkSmartPointer<vtkDataObject> TakeOfSet(vtkPointSet* data, bool haveVertices)
 
 bool vtkSPHHaveVertices(vtkDataObject* data)
 {
-  for (vtkPointSet* set : vtkSPHListPointSets(data))
-  {
-    if (Cells(set).HasVertices)
-    {
-      return true;
-    }
-  }
-  return false;
+  const std::vector<vtkPointSet*> sets = vtkSPHListPointSets(data);
+  return std::any_of(
+    sets.begin(), sets.end(), [](vtkPointSet* set) { return Cells(set).HasVertices; });
 }
 
 vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(vtkDataObject* data, bool haveVertices)
@@ -154,27 +145,25 @@ vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(vtkDataObject* data, bool have
     return TakeOfSet(set, haveVertices);
   }
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
-  vtkSmartPointer<vtkDataObjectTree> made;
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  if (tree)
+  if (!tree)
   {
-    iterator.TakeReference(tree->NewTreeIterator());
-    iterator->InitTraversal();
+    return data;
   }
-  for (; iterator && !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  vtkSmartPointer<vtkDataObjectTree> made;
+  const auto iterator = vtk::TakeSmartPointer(tree->NewTreeIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
     vtkDataObject* block = iterator->GetCurrentDataObject();
     const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(block, haveVertices);
-    if (taken == block)
+    if (taken != block && !made)
     {
-      continue;
-    }
-    if (!made)
-    {
-      made = vtkSmartPointer<vtkDataObjectTree>::Take(tree->NewInstance());
+      made.TakeReference(tree->NewInstance());
       made->ShallowCopy(tree);
     }
-    made->SetDataSet(iterator, taken);
+    if (taken != block)
+    {
+      made->SetDataSet(iterator, taken);
+    }
   }
   return made ? made.Get() : data;
 }

@@ -257,9 +257,8 @@ void vtkMarchingCorrectors::ContourDistributed(
       return;
     }
     mine.TakeWidening(found->GetArray("Widening"), found->GetArray("WideningVolume"));
-    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
+    for (const auto& array : vtkSPHListArrays(found))
     {
-      vtkAbstractArray* array = found->GetAbstractArray(i);
       array->SetName(nameMade(array->GetName()).c_str());
     }
     vtkSPHAddArrays(found, run.Own->GetPointData());

@@ -133,13 +133,10 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkSPHRanks& ranks, vtkPointSet* particles) const
 {
   const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles, {});
-  vtkPointData* data = own->GetPointData();
-  const auto find = [&](const std::string& name, mcor_quantity quantity, int components)
-  { return name.empty() ? vtkSPHDetect(own, quantity, components) : data->GetArray(name.c_str()); };
   vtkNew<vtkPolyData> fluid;
   fluid->SetPoints(own->GetPoints());
-  for (vtkDataArray* array :
-    { find(this->MassArrayName, MCOR_MASS, 1), find(this->VelocityArrayName, MCOR_VELOCITY, 3) })
+  for (vtkDataArray* array : { vtkSPHDetect(own, MCOR_MASS, 1, this->MassArrayName),
+         vtkSPHDetect(own, MCOR_VELOCITY, 3, this->VelocityArrayName) })
   {
     if (array)
     {
@@ -147,12 +144,12 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
     }
   }
   // The fluid is found among all particles, so each array that may mark the fluid is needed.
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  for (const auto& array : vtkSPHListArrays(own->GetPointData()))
   {
-    const char* name = data->GetArrayName(i);
+    const char* name = array->GetName();
     if (this->FluidArrayName == name || mcor_name_priority(MCOR_PARTICLE_TYPE, name) >= 0)
     {
-      fluid->GetPointData()->AddArray(data->GetAbstractArray(i));
+      fluid->GetPointData()->AddArray(array);
     }
   }
   return vtkSPHMakePoints(vtkSPHGatherTuples(ranks, vtkSPHListArrays(fluid), nullptr), fluid).Get();

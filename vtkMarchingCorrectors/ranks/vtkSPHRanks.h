@@ -40,7 +40,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN

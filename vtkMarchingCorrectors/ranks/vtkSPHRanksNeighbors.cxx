@@ -65,11 +65,8 @@ vtkSPHRanksLists ListWithin(const vtkSPHRanksSpace& space,
   vtkNew<vtkIncrementalOctreePointLocator> tree;
   tree->SetDataSet(set);
   tree->BuildLocator();
-  int last[3]; // number of images on each side
-  for (int a = 0; a < 3; ++a)
-  {
-    last[a] = space.IsPeriodic(a) ? 1 : 0;
-  }
+  // The number of images on each side.
+  const int last[3] = { space.IsPeriodic(0), space.IsPeriodic(1), space.IsPeriodic(2) };
   vtkSPHRanksLists lists;
   vtkNew<vtkIdList> within;
   for (const std::vector<Sphere>& spheres : spheresOfRanks)

@@ -11,7 +11,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
@@ -80,16 +79,6 @@ void Unpack(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType first, 
     array->SetVariantValue(i, vtkVariant(text));
   }
 }
-}
-
-vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data)
-{
-  vtkSPHRanksArrays arrays;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    arrays.emplace_back(data->GetAbstractArray(i));
-  }
-  return arrays;
 }
 
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points)

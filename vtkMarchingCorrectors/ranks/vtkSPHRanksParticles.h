@@ -7,15 +7,12 @@
 #ifndef vtkSPHRanksParticles_h
 #define vtkSPHRanksParticles_h
 
+#include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
-#include "vtkSmartPointer.h"
 
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-class vtkAbstractArray;
-class vtkDataArray;
-class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
@@ -23,7 +20,6 @@ struct vtkSPHParticlesChoice;
 
 using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
 
-vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data);
 /** Lists the positions, then the point arrays. */
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
 /** Makes points of arrays that vtkSPHListArrays() lists, with the same roles (scalars, vectors, ...) as in `like`. */

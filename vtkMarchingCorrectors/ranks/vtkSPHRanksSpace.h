@@ -8,7 +8,6 @@
 #include "vtkSPHRanks.h"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -149,12 +149,8 @@ std::vector<double> vtkSPHBoundsOfPeriodDistributed(
 bool vtkSPHAlgorithm::vtkSharedRun::Agree(const std::string& problem)
 {
   std::string sentence = problem;
-  const bool good = this->Ranks.Agree(sentence);
-  if (!good)
-  {
-    this->Fail(sentence);
-  }
-  return good;
+  this->Ranks.Agree(sentence);
+  return this->vtkRun::Agree(sentence);
 }
 
 bool vtkSPHAlgorithm::vtkSharedRun::Begin(vtkPointSet* particles)

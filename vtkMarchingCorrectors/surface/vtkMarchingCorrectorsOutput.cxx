@@ -193,10 +193,7 @@ void vtkMarchingCorrectorsOutput::BuildInterpolatedArrays(vtkPolyData* output)
     this->Surface.nearest_particle, this->Surface.nearest_particle + count, nearest->GetPointer(0));
   for (const vtkSPHAttribute& from : this->Input.FromNearest)
   {
-    auto to = vtkSmartPointer<vtkAbstractArray>::Take(
-      vtkAbstractArray::CreateArray(from.Array->GetDataType()));
-    to->SetNumberOfComponents(from.Components);
-    to->SetNumberOfTuples(count);
+    const vtkSmartPointer<vtkAbstractArray> to = vtkSPHMakeLike(from.Array, count);
     from.Array->GetTuples(nearest, to);
     add(from, to);
   }

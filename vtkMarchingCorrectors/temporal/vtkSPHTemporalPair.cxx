@@ -58,12 +58,8 @@ vtkSmartPointer<vtkDataArray> MakeArray(
   const Values& a, const Values& b, vtkIdType count, const ValueT& value)
 {
   const bool isFloat = a.View.type == MCOR_FLOAT32 && b.View.type == MCOR_FLOAT32;
-  const auto array = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
-  array->SetNumberOfComponents(a.View.components);
-  array->SetNumberOfTuples(count);
-  array->SetName(a.View.name);
-  array->CopyComponentNames(a.Held);
+  const vtkSmartPointer<vtkDataArray> array =
+    vtkDataArray::SafeDownCast(vtkSPHMakeLike(a.Held, count, isFloat ? VTK_FLOAT : VTK_DOUBLE));
   vtkSMPTools::For(0, count, Grain,
     [&](vtkIdType begin, vtkIdType end)
     {
@@ -343,10 +339,8 @@ void vtkSPHTemporalPair::WarnOfLostArrays()
   std::string lost;
   for (const Step& step : this->Steps)
   {
-    vtkPointData* data = step.Particles->GetPointData();
-    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    for (const auto& array : vtkSPHListArrays(step.Particles->GetPointData()))
     {
-      vtkAbstractArray* array = data->GetAbstractArray(i);
       if (!this->IsInBoth(array))
       {
         lost += (lost.empty() ? "" : ", ") + vtkSPHNameOf(array);
@@ -420,10 +414,8 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   vtkNew<vtkPoints> points;
   points->SetData(MakeArray(from, to, near.Particles->GetNumberOfPoints(), position));
   output->SetPoints(points);
-  vtkPointData* own = near.Particles->GetPointData();
-  for (int k = 0; k < own->GetNumberOfArrays(); ++k)
+  for (const auto& array : vtkSPHListArrays(near.Particles->GetPointData()))
   {
-    vtkAbstractArray* array = own->GetAbstractArray(k);
     if (!this->IsInBoth(array))
     {
       output->GetPointData()->RemoveArray(array->GetName());

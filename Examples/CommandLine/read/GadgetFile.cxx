@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "ParticleFile.h"
 #include "Text.h"
 
 #include "vtkByteSwap.h"
-#include "vtkDoubleArray.h"
-#include "vtkNew.h"
+#include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHSay.h"
@@ -103,11 +103,8 @@ public:
     this->Check(gas->GetPoints(), "it has no positions");
     if (this->Masses[0] != 0.0)
     {
-      vtkNew<vtkDoubleArray> masses;
-      masses->SetName("Masses");
-      masses->SetNumberOfValues(this->Counts[0]);
-      masses->Fill(this->Masses[0]);
-      gas->GetPointData()->AddArray(masses);
+      const std::vector<double> masses(static_cast<std::size_t>(this->Counts[0]), this->Masses[0]);
+      AddNumbers(gas->GetPointData(), "Masses", masses);
     }
     return gas;
   }

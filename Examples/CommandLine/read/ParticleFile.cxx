@@ -136,7 +136,7 @@ const Kind* KindOf(const Formats& formats, const std::string& file)
 /// surface's file, because names in a legacy file may hold any bytes. kind: what has the values, in words.
 void CheckArrays(File file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
-  for (vtkAbstractArray* array : ArraysOf(arrays))
+  for (vtkAbstractArray* array : vtkSPHListArrays(arrays))
   {
     array->SetName(Printable(array->GetName() ? array->GetName() : "").c_str());
     for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
@@ -219,11 +219,11 @@ vtkSmartPointer<vtkPolyData> TakeParticles(File file, vtkPointSet* all, bool hav
                 : vtkSPHSay(MCOR_SAY(MESH_NODES), static_cast<long long>(others),
                     static_cast<long long>(all->GetNumberOfPoints()), " of ", file.c_str()));
   particles->SetPoints(data->GetPoints());
-  for (vtkAbstractArray* array : ArraysOf(data->GetPointData()))
+  for (vtkAbstractArray* array : vtkSPHListArrays(data->GetPointData()))
   {
     particles->GetPointData()->AddArray(array);
   }
-  for (vtkAbstractArray* array : ArraysOf(data->GetFieldData()))
+  for (vtkAbstractArray* array : vtkSPHListArrays(data->GetFieldData()))
   {
     if (vtkDataArray::SafeDownCast(array) && vtkSPHTellsOfPeriod(array->GetName()))
     {
@@ -425,7 +425,7 @@ ParticleSets ReadSets(const std::vector<std::string>& files, int rank, int count
 
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool isSilent)
 {
-  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  vtkNew<vtkMultiBlockDataSet> blocks;
   for (const auto& [file, points] : sets.Sets)
   {
     const vtkSmartPointer<vtkPolyData> part = TakeParticles(file, points, sets.HaveVertices);
@@ -433,7 +433,7 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool isSilent)
     {
       continue;
     }
-    for (vtkAbstractArray* array : ArraysOf(part->GetPointData()))
+    for (vtkAbstractArray* array : vtkSPHListArrays(part->GetPointData()))
     {
       part->GetPointData()->AddArray(AsNumbers(file, array));
     }
@@ -442,19 +442,14 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets, bool isSilent)
       return part;
     }
     DropCopies(part);
-    parts.push_back(part);
-  }
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  for (const vtkSmartPointer<vtkPolyData>& part : parts)
-  {
     blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
   }
   const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
   static bool isSaid = false;
   NoteOnce(isSaid, isSilent ? "" : vtkSPHDescribeLost(blocks, joined));
-  if (!parts.empty())
+  if (blocks->GetNumberOfBlocks() > 0)
   {
-    joined->SetFieldData(parts.front()->GetFieldData());
+    joined->SetFieldData(blocks->GetBlock(0)->GetFieldData());
   }
   return joined;
 }

@@ -11,7 +11,6 @@
 #include <vector>
 
 struct stat;
-class vtkAbstractArray;
 class vtkDataObject;
 class vtkDataSet;
 class vtkFieldData;
@@ -20,8 +19,7 @@ struct vtkSPHPeriod;
 
 // All functions that read throw std::runtime_error with one sentence.
 
-/// Lists arrays, or their names; "" stands for an array without a name.
-std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data);
+/// Lists the names of arrays; "" stands for an array without a name.
 std::vector<std::string> NamesOf(vtkFieldData* data);
 
 /// Adds an array of these numbers, one in each tuple, to field data, or to a table's row.

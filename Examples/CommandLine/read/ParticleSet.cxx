@@ -15,6 +15,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHSay.h"
 #include "vtkUnsignedCharArray.h"
@@ -102,20 +103,10 @@ vtkSmartPointer<vtkPolyData> PointsAt(vtkDataArray* places)
   return data;
 }
 
-std::vector<vtkAbstractArray*> ArraysOf(vtkFieldData* data)
-{
-  std::vector<vtkAbstractArray*> arrays;
-  for (int i = 0; data && i < data->GetNumberOfArrays(); ++i)
-  {
-    arrays.push_back(data->GetAbstractArray(i));
-  }
-  return arrays;
-}
-
 std::vector<std::string> NamesOf(vtkFieldData* data)
 {
   std::vector<std::string> names;
-  for (vtkAbstractArray* array : ArraysOf(data))
+  for (vtkAbstractArray* array : vtkSPHListArrays(data))
   {
     names.emplace_back(array->GetName() ? array->GetName() : "");
   }
@@ -146,7 +137,7 @@ vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
   const vtkIdType count = fluid->GetNumberOfPoints(), wallCount = walls->GetNumberOfPoints();
   const vtkSmartPointer<vtkPolyData> all =
     PointsAt(Append(fluid->GetPoints()->GetData(), walls->GetPoints()->GetData(), wallCount));
-  for (vtkAbstractArray* each : ArraysOf(fluid->GetPointData()))
+  for (vtkAbstractArray* each : vtkSPHListArrays(fluid->GetPointData()))
   {
     if (vtkDataArray* array = vtkDataArray::SafeDownCast(each)) // texts are left out
     {
@@ -169,7 +160,7 @@ std::string DescribeArrays(vtkPointSet& particles)
   std::ostringstream text;
   text << "particles         " << particles.GetNumberOfPoints() << "\npositions         "
        << DescribeRange(particles.GetPoints()->GetData()) << "\n";
-  for (vtkAbstractArray* array : ArraysOf(particles.GetPointData()))
+  for (vtkAbstractArray* array : vtkSPHListArrays(particles.GetPointData()))
   {
     auto* numbers = vtkDataArray::SafeDownCast(array);
     const int components = array->GetNumberOfComponents();

@@ -126,7 +126,7 @@ void HideOutside(const Job& job, vtkDataSet* points, vtkDataSet* result)
 {
   const vtkBoundingBox box(job.Surface->GetBox());
   const bool isAsked = job.Has("--probe") && job.Surface->GetUseBox();
-  for (vtkAbstractArray* each : ArraysOf(isAsked ? result->GetPointData() : nullptr))
+  for (vtkAbstractArray* each : vtkSPHListArrays(isAsked ? result->GetPointData() : nullptr))
   {
     auto* array = vtkDataArray::SafeDownCast(each);
     const bool isMade = array && !points->GetPointData()->HasArray(array->GetName());
@@ -154,7 +154,7 @@ void AddPointRows(const Job& job, double time, vtkDataSet* points,
   if (columns.empty())
   {
     text = "time,point,x,y,z,valid";
-    for (vtkAbstractArray* array : ArraysOf(arrays))
+    for (vtkAbstractArray* array : vtkSPHListArrays(arrays))
     {
       const std::string name = array->GetName();
       const int components = array->GetNumberOfComponents();

@@ -20,6 +20,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHComponents.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
@@ -72,15 +73,13 @@ void AddIntegrals(vtkTable* table, const std::string& name, double passed,
   const std::vector<double> now(rates->Begin(), rates->End());
   before = before.empty() ? now : before;
   sums.resize(now.size());
-  vtkNew<vtkDoubleArray> column;
-  column->SetName(name.c_str());
-  for (std::size_t row = 0; row < sums.size(); ++row)
-  {
-    // if the flux is NaN, so is the integral
-    sums[row] += passed * 0.5 * (before[row] + now[row]) + 0.0 * now[row];
-    column->InsertNextValue(sums[row]);
-  }
-  table->AddColumn(column);
+  vtkSPHAddColumn<vtkDoubleArray>(table, name.c_str(), rates->GetNumberOfValues(),
+    [&](vtkIdType row)
+    {
+      const auto i = static_cast<std::size_t>(row);
+      // if the flux is NaN, so is the integral
+      return sums[i] += passed * 0.5 * (before[i] + now[i]) + 0.0 * now[i];
+    });
   before = now;
 }
 
@@ -254,11 +253,8 @@ void AddPieces(
   vtkNew<vtkTable> table;
   if (job.IsFilm())
   {
-    vtkNew<vtkDoubleArray> times;
-    times->SetName("time");
-    times->SetNumberOfTuples(pieces->GetNumberOfRows());
-    times->FillValue(time);
-    table->AddColumn(times);
+    vtkSPHAddColumn<vtkDoubleArray>(
+      table, "time", pieces->GetNumberOfRows(), [time](vtkIdType) { return time; });
   }
   for (vtkIdType c = 0; c < pieces->GetNumberOfColumns(); ++c)
   {

@@ -14,6 +14,7 @@
 #include "vtkGenericDataObjectWriter.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -47,7 +48,7 @@ std::vector<Work> FitNamesForXml(vtkDataSet* data)
   for (vtkFieldData* arrays : std::initializer_list<vtkFieldData*>{
          data->GetPointData(), data->GetCellData(), data->GetFieldData() })
   {
-    for (vtkAbstractArray* array : ArraysOf(arrays))
+    for (vtkAbstractArray* array : vtkSPHListArrays(arrays))
     {
       array->SetName(array->GetName() ? array->GetName() : ""); // VTK would write an address
       fit(array->GetName(), [array](const char* name) { array->SetName(name); });

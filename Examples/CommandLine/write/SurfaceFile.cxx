@@ -17,6 +17,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkTriangle.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -195,7 +196,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   {
     AddColumns(columns, colors, "", "", { "red", "green", "blue" });
   }
-  for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
+  for (vtkAbstractArray* array : vtkSPHListArrays(surface->GetPointData()))
   {
     std::string name = array->GetName();
     std::replace_if(
@@ -256,7 +257,7 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   // name v:0.
   for (const bool isVector : { true, false })
   {
-    for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
+    for (vtkAbstractArray* array : vtkSPHListArrays(surface->GetPointData()))
     {
       if ((array->GetNumberOfComponents() > 1) == isVector)
       {
@@ -302,7 +303,7 @@ void Describe(std::ostream& text, const std::string& element, vtkDataSetAttribut
     }
   }
   text << ">\n";
-  for (vtkAbstractArray* array : ArraysOf(arrays))
+  for (vtkAbstractArray* array : vtkSPHListArrays(arrays))
   {
     const int type = array->GetDataType();
     const bool isSigned =
@@ -378,7 +379,7 @@ std::string LostArrays(
 {
   const bool isPly = EndsWith(file, ".ply");
   std::vector<std::string> names = more;
-  for (vtkAbstractArray* array : ArraysOf(surface->GetPointData()))
+  for (vtkAbstractArray* array : vtkSPHListArrays(surface->GetPointData()))
   {
     const std::string name = array->GetName();
     const bool isHeld = isPly ? vtkDataArray::SafeDownCast(array) != nullptr

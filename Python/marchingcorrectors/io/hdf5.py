@@ -379,8 +379,7 @@ def read_vtkhdf(path, step):
         names = [name for name in arrays or () if is_numbers(get(arrays, name)) and get(arrays, name).ndim in (1, 2)]
         check_claims([arrays] if names else [])
         for name in names:
-            begin = offset
-            if steps is not None and get(steps, f"PointDataOffsets/{name}") is not None:
-                begin = of_step(f"PointDataOffsets/{name}")
+            own = f"PointDataOffsets/{name}"
+            begin = of_step(own) if steps is not None and get(steps, own) is not None else offset
             found[name] = values(data_set(arrays, name), begin)
     return Body(points, found, None if times is None else times[i], times=times)

@@ -379,7 +379,7 @@ class Options(CommandLineTest):
             self.assertIn(f'Name="{name}"', output.read_text())
         for quiet, told in ([], "points      262144, 0 of them valid"), (["--quiet"], ""):
             result = self.run_good(self.input, self.directory / "slice.vtk", "--slice=x=-7", "--volume=Density", "--mass=9", *quiet,
-                                   says=r"given mass is not used.*\n.*warning: " + says("POINTS_DRY"))
+                                   says=says("SIZE_BESIDE_VOLUME", "mass is") + r"\n.*warning: " + says("POINTS_DRY"))
             self.assertTrue(result.stdout.startswith(told), result.stdout)
 
     def test_line(self):

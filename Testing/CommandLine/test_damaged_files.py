@@ -114,7 +114,7 @@ class DamagedFiles(CommandLineTest):
             self.cannot_read(self.run_with("small.vtk", data.replace(good, bad)), "small.vtk", why)
 
     def test_crash_of_the_reader(self):
-        """If VTK's XML library crashes, the program says so and ends. Here a library that aborts, faults or recurses replaces VTK's."""
+        """If VTK's XML library crashes, the program reports it and ends. Here a library that aborts, faults or recurses replaces VTK's."""
         for reader, why in (("abort", "Aborted"), ("fault", "Segmentation fault"),
                             ("recursion", "Segmentation fault")):
             with self.subTest(reader):

@@ -112,7 +112,7 @@ def first_apply(folder):
 
 
 def empty_first(folder):
-    """If the first output is empty, the panel says so, and the first output that is not empty gets the colours in its place."""
+    """If the first output is empty, the panel tells it, and the first output that is not empty gets the colours in its place."""
     value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
         APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),

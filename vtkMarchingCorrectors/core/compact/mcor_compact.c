@@ -187,6 +187,10 @@ static mcor_status mcor_share_moves(const mcor_bunches* bunches)
   mcor_context* context = bunches->context;
   const size_t count = (size_t)(bunches->point_count - bunches->vertex_count),
                real = context->cl.real_size, first = (size_t)bunches->vertex_count * real;
+  if (bunches->edge[0] == 1 && bunches->edge[1] == 1 && bunches->edge[2] == 1)
+  {
+    return MCOR_OK;
+  }
   void* moved = malloc(count * real + 1);
   mcor_status status = mcor_allocated(context, moved);
   MCOR_THEN(status, mcor_read(context, &context->mesh.linear, first, moved, count * real));

@@ -232,9 +232,9 @@ class Watch:
 
 def cancel(benchmark):
     """Measures how long a run goes on after it is cancelled. A run stops at its next report of progress. All kernels are
-    compiled beforehand. For each kind of run, prints the longest time without a report, by the clock and in processor seconds of all
-    threads, and the phase in which this time began; of several runs, the one with the shortest such time counts. Then prints how long
-    a run went on after the report that cancelled it: 8 runs are cancelled, each at another report, and the longest time counts."""
+    compiled beforehand. Makes several runs of each kind, and measures the longest time without a report in each. Prints the shortest of
+    these times, by the clock and in processor seconds of all threads, and the phase in which it began. Then cancels 8 runs, each at another
+    report, and prints the longest time for which one of them went on."""
     from marchingcorrectors import vtkMarchingCorrectors
     out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
     size, side = (64, 32) if benchmark.quick else (512, 256)

@@ -36,8 +36,8 @@ def make_tank(count):
 
 
 def show_profile(path, call):
-    """Prints a profile's table of one call, and the call's slowest kernels. The host's time of a phase leaves out OpenCL's calls, because
-    reads wait there for the device. Times of kernels and transfers are the device's."""
+    """Prints the profile of one call as a table, and the call's slowest kernels. The host's time of a phase leaves out OpenCL's functions,
+    because those that read wait for the device. Times of kernels and transfers are the device's."""
     totals = collections.defaultdict(lambda: collections.Counter(dict.fromkeys(("phase", "build"), 0)))
     kernels = collections.Counter()
     with open(path, newline="") as file:

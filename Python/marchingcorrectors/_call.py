@@ -90,9 +90,9 @@ def of_particles(options: Sequence[str]) -> Callable[[Function], Function]:
 
 
 def prepare(positions, words, attributes=None, named=None, wants=(), nothing="no surface", **roles):
-    """Returns the core's arguments; their `units` convert further arguments. words: the call's keywords. named: the arrays that
-    `fluid` and `only` may name; by default the attributes. wants: names of mcor_want. nothing: what the warning says if there is no
-    fluid; if it is None, no fluid is an error. roles: arrays, by the names of their roles in mcor_role."""
+    """Returns the core's arguments. Their `units` serve the caller to convert other lengths and quantities. words: the call's keywords.
+    named: the arrays that `fluid` and `only` may name; by default the attributes. wants: names of mcor_want. nothing: the warning's text
+    if there is no fluid; None: a missing fluid raises an error. roles: arrays, by the names of their roles in mcor_role."""
     options, attributes = dict(words), attributes or {}
     source = options.pop("source", None)
     given = {name: options.pop(name, None) for name in own_keywords(Keywords)}

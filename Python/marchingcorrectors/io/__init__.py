@@ -126,7 +126,7 @@ def _read(paths, types, walls, step):
                     ".npz, .gro, LAMMPS, dumps of Phantom, GADGET; of .gz text alone), or its beginning is damaged.")
 
 
-# -- bodies: VTK's files, such as those of SPHinXsys, PartVTK and SPlisHSPlasH, and tables; several become one set, with walls marked --
+# -- Files of one body each: tables, and VTK's files (SPHinXsys, PartVTK, SPlisHSPlasH). They are joined to one set with marked walls. --
 
 def read_list(path, step):
     """Reads one step of a .pvd or .series file, which lists files of several times."""

@@ -230,7 +230,7 @@ static const particle_set_entry particle_sets[] = {
   { "variable_16", -1.5, .finest = 0.015625 },
   { "variable_128", -1.0, .finest = 0.25 / 128.0 },
   { "variable_1024", -5.3, .finest = 0.25 / 1024.0 },
-  /* symmetric about x = 0 with A = x, spacing a power of 2: the surface A = 0 runs through nodes */
+  /* The set is symmetric about x = 0. Its spacing is a power of 2, so A = x is 0 at nodes. */
   { "on_nodes", 0.0, .blocks = { IN_CUBE(1.5, 0.125, 1.0, 0.0, 9, scalar_x) } },
   /* values that are exactly the iso value over a whole region */
   { "plateau", 1.0, .blocks = { IN_CUBE(1.0, 0.1, 1.3, 0.2, 10, scalar_step) } },

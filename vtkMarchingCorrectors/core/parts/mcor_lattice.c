@@ -187,8 +187,8 @@ static void mcor_fit_steps(mcor_context* context, int64_t extent)
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
   /* Unequal edges are rounded: in fixed-point units, the lowest `spared` bits of their lengths are
-   * 0. Edges are rounded as coarsely as positions of particles with the longest supports, or more
-   * coarsely if a double could not hold the coordinates of all nodes exactly otherwise. */
+   * 0. These are as many bits as are 0 in positions of particles with the longest supports. They
+   * are more if a double needs this to hold the coordinates of all nodes exactly. */
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;

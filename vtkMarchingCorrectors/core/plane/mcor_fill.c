@@ -473,7 +473,7 @@ static mcor_status mcor_make_fill_points(
   return MCOR_OK;
 }
 
-/* ---- All of it ---- */
+/* ---- The filled region ---- */
 
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {

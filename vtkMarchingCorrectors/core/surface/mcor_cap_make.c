@@ -381,7 +381,7 @@ mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* ---- All of it ---- */
+/* ---- The caps of all sides ---- */
 
 /* Lists the surface's vertices that lie on the sides, in tables by the vertices' lattice edges. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The nodes where caps may be: of one side of a period or box, or of a plane that is filled. They
- * are kept in the bricks that particles reach; elsewhere, there is nothing to close. Memory and
+/* Finds the nodes where caps may be. They lie on one side of a period or box, or in a plane that is
+ * filled. They are kept in bricks that particles reach: elsewhere is nothing to close. Memory and
  * time therefore depend on the particles at the side, not on the side's area. If empty space is
  * above the iso value, as with a sum and an iso value of 0, all bricks of the side are kept. If
  * marching has evaluated a brick, the brick's nodes are taken from marching, so that the cap fits

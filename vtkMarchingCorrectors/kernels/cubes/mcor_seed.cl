@@ -111,10 +111,9 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 #define MCOR_COARSE_PARTICLES 1024
 
 /* Returns the state of the query's box, a cube of nodes. The tile may already hold the query's
- * particles, and may be used afterwards. coarse: saves work, but may return MCOR_EXAMINE where
- * bounds of the field would show the cube's side of the iso value. If MCOR_RANGE_DECIDES, and all
- * particles' values are on one side, returns this side, even if the cube, or a part of it, is
- * void. */
+ * particles, and may be used afterwards. coarse: saves work, but returns MCOR_EXAMINE more
+ * often. If MCOR_RANGE_DECIDES, and all particles' values are on one side of the iso value, returns
+ * this side, even if the cube, or a part of it, is void. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {

@@ -5,7 +5,7 @@
  * vertices. Cut vertices move from linear cuts to where the field equals the iso value and this
  * number equals its limit. */
 
-/* Least weight of the fluid itself for a Shepard mean at a vertex. */
+/* A vertex has a Shepard mean only if the weight of the fluid alone is above this. */
 #define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
 
 /* Returns the fluid's own weight at vertex v. */

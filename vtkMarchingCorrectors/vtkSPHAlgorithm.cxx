@@ -252,7 +252,7 @@ int vtkSPHAlgorithm::RequestData(
   if (this->IsShared())
   {
     this->SumShared = [this](vtkPointSet* points, const mcor_input& mine,
-                        const mcor_options& options, double ratio, double* values)
+                        const mcor_options& options, const double* ratio, double* values)
     { return vtkRun::Make(this)->SumNeighbors(points, mine, options, ratio, values); };
   }
   vtkDataObject* all = vtkDataObject::GetData(inputVector[this->GetParticlesPort()]);

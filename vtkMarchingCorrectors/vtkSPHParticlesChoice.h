@@ -34,7 +34,7 @@ struct vtkSPHOnly
  * The function itself is empty if there is one process.
  */
 using vtkSPHSumShared = std::function<std::string(vtkPointSet* points, const mcor_input& mine,
-  const mcor_options& options, double ratio, double* values)>;
+  const mcor_options& options, const double* ratio, double* values)>;
 
 /**
  * Arrays that were computed from neighbours: for each name, the signature of the data that an array

@@ -122,7 +122,7 @@ public:
   }
   /** Computes sums over neighbours, which may be on other processes, see vtkSPHSumShared. */
   virtual std::string SumNeighbors(
-    vtkPointSet*, const mcor_input&, const mcor_options&, double, double*)
+    vtkPointSet*, const mcor_input&, const mcor_options&, const double*, double*)
   {
     return "";
   }

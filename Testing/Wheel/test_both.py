@@ -164,7 +164,7 @@ class Test(Case):
                  for detects, free in ((1, 0), (0, 1))]
         # What is found does not depend on what is missing or illegal.
         mass, types = (sets[name][0] for name in ("mass", "fluid of two types"))
-        cases += [[mass, "Speed", 0.5, {"EstimateSmoothingLength": 1, "SmoothingLengthEstimate": 1, "NeighborRatio": ratio}] for ratio in (-1.0, 0.0)]
+        cases += [[mass, "Speed", 0.5, {"EstimateSmoothingLength": 1, "SmoothingLengthEstimate": 1, "NeighborRatio": ratio}] for ratio in (-float("inf"), -1.0, 0.0)]
         cases += [[types, "none", 0.0, {"DetectFluid": 1}], [types, "Speed", 0.5, {"FluidArrayName": "none"}]]
         python = self.report(cases)
         for i, (name, (file, listed)) in enumerate(sets.items()):

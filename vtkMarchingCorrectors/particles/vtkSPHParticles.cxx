@@ -11,7 +11,6 @@
 #include "vtkSPHSay.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <sstream>
@@ -140,7 +139,7 @@ bool vtkSPHParticles::Collect(const mcor_ranks* ranks)
   this->Lengths = this->Densities = nullptr;
   if (this->Error.empty() && this->Found.needs_lengths)
   {
-    this->Lengths = this->SumNeighbors("SmoothingLength", f.NeighborRatio);
+    this->Lengths = this->SumNeighbors("SmoothingLength", &f.NeighborRatio);
     if (this->Lengths)
     {
       mcor_take_lengths(&this->Found, static_cast<const double*>(vtkSPHView(this->Lengths).data));
@@ -148,7 +147,7 @@ bool vtkSPHParticles::Collect(const mcor_ranks* ranks)
   }
   if (this->Error.empty() && this->Found.needs_densities)
   {
-    this->Densities = this->SumNeighbors("Density", -HUGE_VAL);
+    this->Densities = this->SumNeighbors("Density", nullptr);
     if (this->Densities)
     {
       mcor_take_densities(
@@ -250,19 +249,19 @@ bool vtkSPHParticles::IsMade(const char* name)
   return name && std::strncmp(name, MadeName, std::strlen(MadeName)) == 0;
 }
 
-std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
-  std::int64_t count, double* values)
+std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options,
+  const double* ratio, std::int64_t count, double* values)
 {
   mcor_message why;
-  const mcor_status status = ratio != -HUGE_VAL
-    ? mcor_find_smoothing_lengths(&input, &options, ratio, count, values, &why)
+  const mcor_status status = ratio
+    ? mcor_find_smoothing_lengths(&input, &options, *ratio, count, values, &why)
     : mcor_sum_densities(&input, &options, count, values, &why);
   const std::string problem = vtkSPHTakeText(why);
   return status == MCOR_CANCELLED ? "" : problem;
 }
 
 // Particles from another process come with their sums, in the array NameMade(name).
-vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, double ratio)
+vtkSmartPointer<vtkDataArray> vtkSPHParticles::SumNeighbors(const char* name, const double* ratio)
 {
   vtkPointData* arrays = this->Points->GetPointData();
   vtkNew<vtkDoubleArray> array;

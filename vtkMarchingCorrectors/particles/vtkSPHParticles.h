@@ -62,11 +62,11 @@ void vtkSPHChoose(vtkSPHParticlesChoice& choice, vtkPointSet* points, vtkSPHRequ
 
 /**
  * Lets the core compute, from neighbours, smoothing lengths or densities of the first `count`
- * particles. ratio: the NeighborRatio of smoothing lengths; -infinity: densities. Returns why the core
+ * particles. ratio: the NeighborRatio of smoothing lengths; null: densities. Returns why the core
  * failed; an empty text if it did not fail, or was cancelled.
  */
-std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options, double ratio,
-  std::int64_t count, double* values);
+std::string vtkSPHSumNeighbors(const mcor_input& input, const mcor_options& options,
+  const double* ratio, std::int64_t count, double* values);
 
 class vtkSPHParticles
 {
@@ -132,7 +132,7 @@ private:
   mcor_options OwnOptions() const;
   /** Returns an array of this name, filled by vtkSPHSumNeighbors(). An array that was filled before
    * for the same particles is used again. If the sums fail, returns null and sets Error. */
-  vtkSmartPointer<vtkDataArray> SumNeighbors(const char* name, double ratio);
+  vtkSmartPointer<vtkDataArray> SumNeighbors(const char* name, const double* ratio);
   vtkSmartPointer<vtkAbstractArray> ArrayOf(int index) const;
   std::vector<std::uint64_t> Sign() const;
 

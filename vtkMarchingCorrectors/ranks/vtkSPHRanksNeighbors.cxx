@@ -150,7 +150,7 @@ vtkIdType AskAround(vtkSPHRanks& ranks, const vtkSPHRanksSpace& space,
 }
 
 std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, const mcor_input& mine,
-  const mcor_options& asked, double ratio, double* values)
+  const mcor_options& asked, const double* ratio, double* values)
 {
   vtkSPHRanks& ranks = this->Ranks;
   mcor_options options = asked;
@@ -244,25 +244,24 @@ std::string vtkSPHAlgorithm::vtkSharedRun::SumNeighbors(vtkPointSet* points, con
     std::string known = vtkSPHSumNeighbors(mine, options, ratio, mine.count, values);
     return ranks.Agree(known) ? problem : known;
   };
-  if (ratio > 0.0 && !sum(own, found->GetPointer(0)))
+  if (ratio && !sum(own, found->GetPointer(0)))
   {
     return explain();
   }
   const double support = mcor_support_factor(options.sph_kernel);
-  const double unit = ratio > 0.0             ? Around * support
+  const double unit = ratio                   ? Around * support
     : mine.smoothing_length_is_support_radius ? 1.0
                                               : support;
   const mcor_input near = ViewOf(arrays, members, mine);
   std::vector<double> sums;
   for (vtkIdType i = 0; i < own; ++i)
   {
-    sums.push_back(
-      unit * (ratio > 0.0 ? found->GetValue(i) : vtkSPHValueOf(near.smoothing_length, i)));
+    sums.push_back(unit * (ratio ? found->GetValue(i) : vtkSPHValueOf(near.smoothing_length, i)));
   }
   vtkNew<vtkIdList> order;
   const vtkIdType asking = AskAround(ranks, space, sums, arrays, order);
   this->AddShare("RankNeighbors", static_cast<std::int64_t>(arrays[0]->GetNumberOfTuples() - own));
-  const vtkIdType count = ratio > 0.0 ? asking : own;
+  const vtkIdType count = ratio ? asking : own;
   if (!sum(count, sums.data()))
   {
     return explain();

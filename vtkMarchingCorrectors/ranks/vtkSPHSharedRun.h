@@ -39,7 +39,7 @@ public:
     return this->Ranks.Gather(mine);
   }
   std::string SumNeighbors(vtkPointSet* points, const mcor_input& mine,
-    const mcor_options& options, double ratio, double* values) override;
+    const mcor_options& options, const double* ratio, double* values) override;
   bool Agree(const std::string& problem) override;
   bool Begin(vtkPointSet* particles) override;
   bool Measure(vtkSPHParticles& particles, bool forSamples) override;
